@@ -1,0 +1,47 @@
+//! What every pass shares: group 0, found by qualified name.
+
+use crate::{Context, Error};
+
+/// Where a frame stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameInfo {
+    /// Number of the frame; random numbers are drawn from it and the seed.
+    pub index: u32,
+    /// Seed of the render.
+    pub seed: u64,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Last frame's resources hold last frame, not zeros.
+    pub history_valid: bool,
+}
+
+/// The owner of the frame's and the scene's resources.
+pub trait Globals: Send {
+    /// Brings uniforms, transforms and whatever else moves up to this frame; called once before its first pass.
+    ///
+    /// # Errors
+    /// Any; the frame is then not rendered.
+    fn advance(&mut self, context: &Context, frame: &FrameInfo) -> Result<(), Error>;
+
+    /// What is bound to `name` of `module` (`triangles` of `scene/geometry`); `None` where this scene has no such thing.
+    fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>>;
+
+    /// A number that changes whenever [`Globals::resource`] begins to answer with other resources: bind groups are then made anew.
+    fn generation(&self) -> u64 {
+        0
+    }
+}
+
+/// Globals for passes that use none.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoGlobals;
+
+impl Globals for NoGlobals {
+    fn advance(&mut self, _: &Context, _: &FrameInfo) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn resource(&self, _: &str, _: &str) -> Option<wgpu::BindingResource<'_>> {
+        None
+    }
+}

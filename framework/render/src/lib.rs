@@ -1,0 +1,44 @@
+//! The only room that names wgpu: runs plans on an adapter.
+//!
+//! A [`Context`] is an open device. A [`Registry`] composes the shaders of every kind of pass and tells the graph their contracts. A
+//! [`Renderer`] takes a plan, a registry and [`Globals`], and renders frames. Shaders meet the host by name: layouts, numbers and offsets
+//! come from reflection. A [`Kernel`] by itself runs one entry point on any buffers; [`run_once`] does so in one call, for tests.
+//!
+//! What is absent: this crate knows no pass, no domain, no file format and no window.
+
+mod adapter;
+mod cache;
+mod context;
+mod contract;
+mod error;
+mod executor;
+mod globals;
+mod kernel;
+mod layout;
+mod limits;
+mod node;
+mod params;
+mod pass;
+mod pool;
+mod readback;
+mod registry;
+mod renderer;
+mod run_once;
+mod scene;
+mod stamps;
+mod timing;
+
+pub use adapter::{AdapterReport, adapters};
+pub use context::{Context, ContextOptions, LimitChoice};
+pub use error::Error;
+pub use globals::{FrameInfo, Globals, NoGlobals};
+pub use kernel::Kernel;
+pub use limits::{BINDING_SIZE, BUFFER_SIZE, Need};
+pub use pass::{Frame, KernelPass, Pass, PassError, PassKind};
+pub use pool::{MemoryReport, ResourceMemory};
+pub use readback::read;
+pub use registry::{Known, Registry};
+pub use renderer::{Renderer, RendererOptions};
+pub use run_once::{Data, Once, run_once};
+pub use scene::{SceneGlobals, View};
+pub use timing::{Clock, PassTime, Startup, Timings};

@@ -1,0 +1,116 @@
+//! A scene on the device: group 0 of every pass.
+//!
+//! Geometry, materials and textures are uploaded once. What moves is written anew for each frame, this frame's beside the last's.
+
+mod mirror;
+mod moving;
+mod still;
+
+use crate::{Context, Error, FrameInfo, Globals};
+use aquifer_scene::{Features, Scene};
+use moving::{Moving, State};
+use std::sync::Arc;
+use still::Still;
+
+/// Which camera, and how time goes by.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct View {
+    /// Name of the camera; `None` is the scene's first.
+    pub camera: Option<String>,
+    /// Seconds at frame 0.
+    pub time: f32,
+    /// Seconds from one frame to the next; 0 stands still.
+    pub step: f32,
+    /// Film samples stay at the middle of the pixel.
+    pub centred: bool,
+}
+
+impl View {
+    /// Seconds at a frame.
+    pub fn time_at(&self, frame: u32) -> f32 {
+        // In f64: after 10⁶ frames an f32 product is milliseconds off.
+        (f64::from(self.time) + f64::from(self.step) * f64::from(frame)) as f32
+    }
+}
+
+/// The scene's resources on a device, seen through one camera.
+pub struct SceneGlobals {
+    scene: Arc<Scene>,
+    view: View,
+    still: Still,
+    moving: Moving,
+    last: Option<State>,
+}
+
+impl SceneGlobals {
+    /// Uploads a finished scene.
+    ///
+    /// # Errors
+    /// [`Error::LimitTooSmall`] names the array that the adapter cannot bind; [`Error::Globals`] for an unknown camera;
+    /// [`Error::OutOfMemory`].
+    pub fn new(context: &Context, scene: Arc<Scene>, view: View) -> Result<SceneGlobals, Error> {
+        let features = Features::of(&scene);
+        let still = Still::upload(context, &scene, &features)?;
+        let first = State::of(&scene, &still, &view, 0).map_err(refused)?;
+        let moving = Moving::new(context, &features, &first)?;
+        Ok(SceneGlobals { scene, view, still, moving, last: None })
+    }
+
+    /// Entries of the traversal stack that a scene needs; the trace shaders take it as `scene/limits::STACK`.
+    ///
+    /// The upper level of a moving scene is rebuilt for every frame and may grow deeper: it gets room for 16 more levels.
+    ///
+    /// # Errors
+    /// [`Error::Globals`] for a scene that was not finished.
+    pub fn stack_depth(scene: &Scene) -> Result<u32, Error> {
+        let moment = scene.at(0.0, None).map_err(refused)?;
+        let upper = aquifer_scene::Tlas::build(scene, &moment).bvh.depth;
+        let lower = scene.meshes.iter().map(|mesh| mesh.bvh.depth).max().unwrap_or(0);
+        let slack = if Features::of(scene).moving_objects { 16 } else { 0 };
+        // A multiple of 8, so that similar scenes share pipelines.
+        Ok((upper + lower + slack).next_multiple_of(8))
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.still.bytes() + self.moving.bytes()
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
+    /// Looks through another camera, or at another time, from the next frame on.
+    pub fn set_view(&mut self, view: View) {
+        self.view = view;
+    }
+}
+
+fn refused(error: aquifer_scene::SceneError) -> Error {
+    Error::Globals(error.to_string())
+}
+
+impl Globals for SceneGlobals {
+    fn advance(&mut self, context: &Context, frame: &FrameInfo) -> Result<(), Error> {
+        let time = self.view.time_at(frame.index);
+        let state = match self.last.take() {
+            Some(last) if last.is_at(&self.view, time) => last,
+            last => {
+                let new = State::of(&self.scene, &self.still, &self.view, frame.index).map_err(refused)?;
+                self.moving.write_now(context, &new)?;
+                // History starts as a copy of now, never as zeros.
+                self.moving.write_before(context, if frame.history_valid { last.as_ref().unwrap_or(&new) } else { &new })?;
+                new
+            }
+        };
+        self.moving.write_frame(context, frame, &state, self.view.centred);
+        self.last = Some(state);
+        Ok(())
+    }
+
+    fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>> {
+        let name = format!("{module}::{name}");
+        self.moving.buffer(&name).or_else(|| self.still.buffer(&name)).map(wgpu::Buffer::as_entire_binding)
+    }
+}

@@ -1,0 +1,208 @@
+//! What is written for each frame: camera, transforms, lights and the upper hierarchy, now and before.
+
+use super::{
+    View,
+    mirror::{self, NONE},
+    still::{Still, array},
+};
+use crate::{Context, Error, FrameInfo};
+use aquifer_scene::{BvhNode, Camera, Features, Light, LightList, Moment, Scene, SceneError, Tlas};
+use std::collections::BTreeMap;
+
+/// The scene at one time, in bytes.
+pub struct State {
+    time: f32,
+    view: View,
+    camera: Camera,
+    /// (name of this frame's array, name of last frame's, bytes).
+    arrays: [Array; 4],
+    /// Lights that can be drawn.
+    lights: u32,
+    depth: u32,
+}
+
+struct Array {
+    now: &'static str,
+    /// Empty where shaders never ask for last frame's.
+    before: &'static str,
+    bytes: Vec<u8>,
+}
+
+impl State {
+    pub fn of(scene: &Scene, still: &Still, view: &View, frame: u32) -> Result<State, SceneError> {
+        let time = view.time_at(frame);
+        let moment = scene.at(time, view.camera.as_deref())?;
+        let tlas = Tlas::build(scene, &moment);
+        let list = LightList::build(scene, &still.emitters, still.environment.as_ref(), &moment, &tlas);
+        let lights = light_records(&moment, &list, still);
+        let arrays = [
+            Array { now: "scene/geometry::instances", before: "scene/geometry::instances_prev", bytes: bytes(&instances(&moment, &list, still)) },
+            Array { now: "trace/bvh2::tlas", before: "trace/bvh2::tlas_prev", bytes: bytes(&upper(&tlas)) },
+            Array { now: "scene/punctual::punctuals", before: "scene/punctual::punctuals_prev", bytes: bytes(&punctuals(scene, &moment)) },
+            Array { now: "lights/scene::lights", before: "", bytes: bytes(&lights) },
+        ];
+        let drawable = if list.table.is_empty() { 0 } else { list.lights.len() as u32 };
+        Ok(State { time, view: view.clone(), camera: moment.camera, arrays, lights: drawable, depth: tlas.bvh.depth })
+    }
+
+    /// Nothing would change.
+    pub fn is_at(&self, view: &View, time: f32) -> bool {
+        self.time == time && self.view.camera == view.camera
+    }
+}
+
+fn bytes<T: bytemuck::Pod>(records: &[T]) -> Vec<u8> {
+    let zero = [T::zeroed()];
+    bytemuck::cast_slice(if records.is_empty() { &zero } else { records }).to_vec()
+}
+
+fn instances(moment: &Moment, list: &LightList, still: &Still) -> Vec<mirror::Instance> {
+    let record = |(instance, &first_light): (&aquifer_scene::Instance, &u32)| {
+        let place = still.places[instance.mesh as usize];
+        mirror::Instance::new(instance, place.root, place.first_triangle, first_light)
+    };
+    moment.instances.iter().zip(&list.first_of_instance).map(record).collect()
+}
+
+/// The upper hierarchy; of an empty one, a root whose children no ray enters. Room for as many nodes as instances can need.
+fn upper(tlas: &Tlas) -> Vec<BvhNode> {
+    let nothing = BvhNode { min: [f32::MAX; 3], first: 1, max: [f32::MIN; 3], count: 0 };
+    if tlas.bvh.nodes.is_empty() { vec![nothing; 3] } else { tlas.bvh.nodes.clone() }
+}
+
+fn punctuals(scene: &Scene, moment: &Moment) -> Vec<mirror::Punctual> {
+    moment.lights.iter().map(|placed| mirror::Punctual::new(&scene.lights[placed.light as usize], placed)).collect()
+}
+
+fn light_records(moment: &Moment, list: &LightList, still: &Still) -> Vec<mirror::Light> {
+    let record = |(at, light): (usize, &Light)| {
+        let entry = list.table.entries.get(at).copied().unwrap_or_default();
+        let (kind, index, triangle) = match *light {
+            Light::Triangle(t) => {
+                let mesh = moment.instances[t.instance as usize].mesh;
+                (0, t.instance, still.places[mesh as usize].first_triangle + t.triangle)
+            }
+            Light::Punctual(index) => (1, index, NONE),
+            Light::Environment => (2, NONE, NONE),
+        };
+        mirror::Light { kind, index, triangle, pmf: entry.pmf, threshold: entry.threshold, other: entry.alias }
+    };
+    list.lights.iter().enumerate().map(record).collect()
+}
+
+/// The buffers.
+pub struct Moving {
+    buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    frame: wgpu::Buffer,
+    /// Deepest upper hierarchy that the traversal stack was sized for.
+    depth: u32,
+    /// Camera of the frame before.
+    camera: Option<mirror::Camera>,
+}
+
+const FRAME: &str = "frame/frame::frame";
+
+impl Moving {
+    pub fn new(context: &Context, features: &Features, first: &State) -> Result<Moving, Error> {
+        let mut buffers = BTreeMap::new();
+        for Array { now, before, bytes } in &first.arrays {
+            // A hierarchy of n leaves has 2 n − 1 nodes, but squashed instances have none: leave room for them to come back.
+            let room = if now.ends_with("tlas") { first.arrays[0].bytes.len() / size_of::<mirror::Instance>() * 2 * size_of::<BvhNode>() } else { 0 };
+            let mut contents = bytes.clone();
+            contents.resize(contents.len().max(room), 0);
+            buffers.insert(*now, array(context, now, &contents, wgpu::BufferUsages::STORAGE)?);
+            if !before.is_empty() && (features.moving_objects || features.moving_lights) {
+                buffers.insert(*before, array(context, before, &contents, wgpu::BufferUsages::STORAGE)?);
+            }
+        }
+        let frame = array(context, FRAME, &[mirror::Frame::default()], wgpu::BufferUsages::UNIFORM)?;
+        let slack = if features.moving_objects { 16 } else { 0 };
+        Ok(Moving { buffers, frame, depth: first.depth + slack, camera: None })
+    }
+
+    pub fn buffer(&self, name: &str) -> Option<&wgpu::Buffer> {
+        if name == FRAME { Some(&self.frame) } else { self.buffers.get(name) }
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.buffers.values().map(wgpu::Buffer::size).sum::<u64>() + self.frame.size()
+    }
+
+    pub fn write_now(&self, context: &Context, state: &State) -> Result<(), Error> {
+        if state.depth > self.depth {
+            let (found, room) = (state.depth, self.depth);
+            return Err(Error::Globals(format!("at {} s the scene's upper hierarchy is {found} levels deep; the traversal stack has room for {room}", state.time)));
+        }
+        state.arrays.iter().for_each(|array| self.write(context, array.now, &array.bytes));
+        Ok(())
+    }
+
+    pub fn write_before(&self, context: &Context, state: &State) -> Result<(), Error> {
+        state.arrays.iter().for_each(|array| self.write(context, array.before, &array.bytes));
+        Ok(())
+    }
+
+    fn write(&self, context: &Context, name: &str, bytes: &[u8]) {
+        if let Some(buffer) = self.buffers.get(name) {
+            context.queue().write_buffer(buffer, 0, bytes);
+        }
+    }
+
+    pub fn write_frame(&mut self, context: &Context, info: &FrameInfo, state: &State, centred: bool) {
+        let jitter = if centred { [0.5; 2] } else { jitter(info.seed, info.index) };
+        let camera = mirror::Camera::new(&state.camera, jitter);
+        let before = self.camera.replace(camera).filter(|_| info.history_valid).unwrap_or(camera);
+        let frame = mirror::Frame {
+            extent: info.size,
+            index: info.index,
+            history_valid: u32::from(info.history_valid),
+            seed: [info.seed as u32, (info.seed >> 32) as u32],
+            lights: state.lights,
+            padding: 0,
+            camera,
+            camera_prev: before,
+        };
+        context.queue().write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+    }
+}
+
+/// Place of the film sample in every pixel of a frame: the R2 sequence (Roberts 2018), turned by a hash of the seed. Uniform over seeds
+/// for any one frame, evenly spread over frames for any one seed.
+fn jitter(seed: u64, frame: u32) -> [f32; 2] {
+    const STEPS: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
+    let turn = [split_mix(seed), split_mix(seed ^ 0x5851_f42d_4c95_7f2d)];
+    // Fixed point with 64 bits: exact for every frame. The top 24 are what an f32 below 1 can hold.
+    [0, 1].map(|axis| (STEPS[axis].wrapping_mul(u64::from(frame)).wrapping_add(turn[axis]) >> 40) as f32 / (1 << 24) as f32)
+}
+
+/// SplitMix64's finaliser (Steele et al. 2014).
+fn split_mix(seed: u64) -> u64 {
+    let mut z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jitter_is_even_over_frames_and_over_seeds() {
+        let counts = |samples: &dyn Fn(u32) -> [f32; 2]| {
+            let mut bins = [0_u32; 16];
+            for i in 0..1600 {
+                let [x, y] = samples(i);
+                assert!((0.0..1.0).contains(&x) && (0.0..1.0).contains(&y));
+                bins[(x * 4.0) as usize + 4 * (y * 4.0) as usize] += 1;
+            }
+            bins
+        };
+        // Low discrepancy over frames: far closer to 100 a bin than random numbers are.
+        assert!(counts(&|frame| jitter(7, frame)).iter().all(|count| count.abs_diff(100) <= 6));
+        // Random over seeds: χ² with 15 degrees of freedom, 0.1 % point 37.7.
+        let over_seeds = counts(&|seed| jitter(u64::from(seed), 11));
+        let chi2: f64 = over_seeds.iter().map(|&n| (f64::from(n) - 100.0).powi(2) / 100.0).sum();
+        assert!(chi2 < 37.7, "{chi2}");
+    }
+}

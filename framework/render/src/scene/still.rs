@@ -1,0 +1,186 @@
+//! What does not move: geometry, materials, textures, the environment.
+
+use super::mirror::{self, NONE, pack_half4, pack_unit};
+use crate::{BINDING_SIZE, Context, Error};
+use aquifer_scene::{BvhNode, Emitters, EnvironmentDistribution, Features, Mesh, Scene, TextureRef};
+use std::collections::BTreeMap;
+use wgpu::util::DeviceExt;
+
+/// Buffers by qualified name, and what moving data is made from.
+pub struct Still {
+    buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    /// One a mesh.
+    pub places: Vec<Place>,
+    pub emitters: Emitters,
+    pub environment: Option<EnvironmentDistribution>,
+}
+
+/// Where a mesh begins in the shared arrays.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub root: u32,
+    pub first_triangle: u32,
+}
+
+impl Still {
+    pub fn upload(context: &Context, scene: &Scene, features: &Features) -> Result<Still, Error> {
+        let emitters = Emitters::find(scene);
+        let environment = scene.environment.as_ref().map(EnvironmentDistribution::new);
+        let mut still = Still { buffers: BTreeMap::new(), places: places(scene), emitters, environment };
+        still.add_geometry(context, scene, features)?;
+        still.add_materials(context, scene)?;
+        if let Some(environment) = &scene.environment {
+            still.add_environment(context, environment)?;
+        }
+        Ok(still)
+    }
+
+    pub fn buffer(&self, name: &str) -> Option<&wgpu::Buffer> {
+        self.buffers.get(name)
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.buffers.values().map(wgpu::Buffer::size).sum()
+    }
+
+    fn add<T: bytemuck::Pod>(&mut self, context: &Context, name: &'static str, records: &[T]) -> Result<(), Error> {
+        self.buffers.insert(name, array(context, name, records, wgpu::BufferUsages::STORAGE)?);
+        Ok(())
+    }
+
+    fn add_geometry(&mut self, context: &Context, scene: &Scene, features: &Features) -> Result<(), Error> {
+        let nodes: Vec<BvhNode> = scene.meshes.iter().flat_map(|mesh| mesh.bvh.nodes.iter().copied()).collect();
+        self.add(context, "trace/bvh2::nodes", &nodes)?;
+        let all = |corner: fn(&Mesh, usize) -> mirror::Triangle| scene.meshes.iter().flat_map(move |mesh| (0..mesh.triangles.len()).map(move |t| corner(mesh, t)));
+        self.add(context, "scene/geometry::triangles", &all(triangle).collect::<Vec<_>>())?;
+        let infos: Vec<_> = scene.meshes.iter().zip(&self.emitters.meshes).flat_map(|(mesh, emitters)| {
+            mesh.materials.iter().enumerate().map(|(t, &material)| mirror::TriangleInfo { material, emissive: emitters.ordinal(t as u32).unwrap_or(NONE) })
+        }).collect();
+        self.add(context, "scene/geometry::triangle_infos", &infos)?;
+        if features.textures {
+            self.add(context, "scene/material::triangle_uvs", &per_triangle(scene, uvs))?;
+        }
+        if features.normal_maps {
+            self.add(context, "surface::triangle_tangents", &per_triangle(scene, tangents))?;
+        }
+        if features.vertex_colors {
+            self.add(context, "scene/material::triangle_colors", &per_triangle(scene, colors))?;
+        }
+        Ok(())
+    }
+
+    fn add_materials(&mut self, context: &Context, scene: &Scene) -> Result<(), Error> {
+        let mut uses: Vec<TextureRef> = Vec::new();
+        let mut index = |used: &Option<TextureRef>| {
+            let Some(used) = used else { return NONE };
+            let at = uses.iter().position(|known| known == used).unwrap_or_else(|| {
+                uses.push(used.clone());
+                uses.len() - 1
+            });
+            at as u32
+        };
+        let materials: Vec<_> = scene.materials.iter().map(|material| mirror::Material::new(material, &mut index)).collect();
+        self.add(context, "scene/material::materials", &materials)?;
+        let mut texels: Vec<[u8; 4]> = Vec::new();
+        let firsts: Vec<u32> = scene.images.iter().map(|image| {
+            let first = texels.len() as u32;
+            texels.extend_from_slice(&image.rgba);
+            first
+        }).collect();
+        let textures: Vec<_> = uses.iter().map(|used| {
+            mirror::Texture::new(used, &scene.images[used.image as usize], firsts[used.image as usize])
+        }).collect();
+        self.add(context, "scene/texture::textures", &textures)?;
+        self.add(context, "scene/texture::texels", &texels)
+    }
+
+    fn add_environment(&mut self, context: &Context, environment: &aquifer_scene::Environment) -> Result<(), Error> {
+        let m = environment.world_to_map;
+        let row = |i: usize| [m.x_axis[i], m.y_axis[i], m.z_axis[i]];
+        let info = mirror::EnvironmentInfo {
+            to_map_x: row(0), width: environment.width, to_map_y: row(1), height: environment.height, to_map_z: row(2), padding: 0,
+        };
+        let buffer = array(context, "environment_info", &[info], wgpu::BufferUsages::UNIFORM)?;
+        self.buffers.insert("scene/environment::environment_info", buffer);
+        let texels: Vec<[f32; 4]> = environment.radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
+        self.add(context, "scene/environment::environment_texels", &texels)?;
+        let pmf: Vec<f64> = self.environment.iter().flat_map(|d| d.table.entries.iter().map(|entry| f64::from(entry.pmf))).collect();
+        self.add(context, "scene/environment::environment_cdf", &cumulative(&pmf, environment.width as usize, environment.height as usize))
+    }
+}
+
+fn places(scene: &Scene) -> Vec<Place> {
+    let mut next = Place { root: 0, first_triangle: 0 };
+    let place = |mesh: &Mesh| {
+        let place = next;
+        next.root += mesh.bvh.nodes.len() as u32;
+        next.first_triangle += mesh.triangles.len() as u32;
+        place
+    };
+    scene.meshes.iter().map(place).collect()
+}
+
+/// A buffer of records, never empty: bindings must hold at least one element.
+pub fn array<T: bytemuck::Pod>(context: &Context, name: &str, records: &[T], usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, Error> {
+    let zero = [T::zeroed()];
+    let contents: &[u8] = bytemuck::cast_slice(if records.is_empty() { &zero } else { records });
+    BINDING_SIZE.require(&format!("the scene's `{name}`"), contents.len() as u64, context.limits().max_storage_buffer_binding_size)?;
+    context.guard(name, || {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        context.device().create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(name), contents, usage })
+    })
+}
+
+fn triangle(mesh: &Mesh, t: usize) -> mirror::Triangle {
+    let [a, b, c] = mesh.corners(t).map(Into::into);
+    let [na, nb, nc] = mesh.triangles[t].map(|vertex| pack_unit(mesh.normals[vertex as usize]));
+    mirror::Triangle { a, na, b, nb, c, nc }
+}
+
+fn per_triangle<T>(scene: &Scene, record: fn(&Mesh, [u32; 3]) -> T) -> Vec<T> {
+    scene.meshes.iter().flat_map(|mesh| mesh.triangles.iter().map(move |&corners| record(mesh, corners))).collect()
+}
+
+fn uvs(mesh: &Mesh, corners: [u32; 3]) -> mirror::TriangleUvs {
+    let [a, b, c] = corners.map(|vertex| {
+        let of = |set: usize| mesh.uvs[set].get(vertex as usize).map_or([0.0; 2], |uv| uv.to_array());
+        let (first, second) = (of(0), of(1));
+        [first[0], first[1], second[0], second[1]]
+    });
+    mirror::TriangleUvs { a, b, c }
+}
+
+fn tangents(mesh: &Mesh, corners: [u32; 3]) -> [[f32; 4]; 3] {
+    corners.map(|vertex| mesh.tangents.get(vertex as usize).map_or([0.0; 4], |tangent| tangent.to_array()))
+}
+
+fn colors(mesh: &Mesh, corners: [u32; 3]) -> [[u32; 2]; 3] {
+    corners.map(|vertex| pack_half4(mesh.colors.get(vertex as usize).map_or([1.0; 4], |color| color.to_array())))
+}
+
+/// Cumulative sums of rows, then of the texels of each row, each ending at 1; of a black map all are 0.
+fn cumulative(pmf: &[f64], width: usize, height: usize) -> Vec<f32> {
+    if pmf.is_empty() {
+        return vec![0.0; height + width * height];
+    }
+    let rows: Vec<f64> = pmf.chunks_exact(width).map(|row| row.iter().sum()).collect();
+    let mut sums = running(&rows);
+    pmf.chunks_exact(width).for_each(|row| sums.extend(running(row)));
+    sums
+}
+
+fn running(weights: &[f64]) -> Vec<f32> {
+    let total: f64 = weights.iter().sum();
+    let mut sum = 0.0;
+    let partial = weights.iter().map(|weight| {
+        sum += weight;
+        if total > 0.0 { (sum / total) as f32 } else { 0.0 }
+    });
+    let mut sums: Vec<f32> = partial.collect();
+    // Rounding must not leave a gap below 1, nor give the entries after the last positive weight any share of it.
+    if total > 0.0 {
+        let end = weights.iter().rposition(|&weight| weight > 0.0).unwrap_or(0);
+        sums[end..].fill(1.0);
+    }
+    sums
+}

@@ -1,0 +1,169 @@
+//! A scene at one time: animation applied, the hierarchy multiplied out, one camera chosen.
+
+use crate::{Camera, Instance, Moment, Node, PlacedLight, Scene, SceneError};
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+
+impl Scene {
+    /// The scene at `time` seconds, seen by the camera of that name, or by the first camera. Before the first key and after the last
+    /// one, animation holds still.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownCamera`] lists the cameras there are; the others speak of a scene that was not finished.
+    pub fn at(&self, time: f32, camera: Option<&str>) -> Result<Moment, SceneError> {
+        let world = self.world_transforms(time)?;
+        Ok(Moment { time, instances: self.instances(&world), lights: self.placed_lights(&world), camera: self.camera(&world, camera)? })
+    }
+
+    /// Node to world at `time`, one a node.
+    ///
+    /// # Errors
+    /// When `time` is not finite.
+    pub fn world_transforms(&self, time: f32) -> Result<Vec<Affine3A>, SceneError> {
+        if !time.is_finite() {
+            return Err(SceneError::Time(time));
+        }
+        let mut nodes = self.nodes.clone();
+        for channel in &self.animation {
+            channel.apply(time, &mut nodes[channel.node as usize]);
+        }
+        let mut world: Vec<Affine3A> = Vec::with_capacity(nodes.len());
+        for node in &nodes {
+            let parent = node.parent.map_or(Affine3A::IDENTITY, |parent| world[parent as usize]);
+            world.push(parent * node.local_transform());
+        }
+        Ok(world)
+    }
+
+    /// Names of the cameras that nodes hold, the default one first.
+    pub fn camera_names(&self) -> Vec<String> {
+        self.placed_cameras().map(|(_, camera)| self.cameras[camera].name.clone()).collect()
+    }
+
+    /// (node, camera), in the order of the cameras.
+    fn placed_cameras(&self) -> impl Iterator<Item = (usize, usize)> {
+        (0..self.cameras.len()).filter_map(|camera| Some((self.nodes.iter().position(|node| node.camera == Some(camera as u32))?, camera)))
+    }
+
+    fn instances(&self, world: &[Affine3A]) -> Vec<Instance> {
+        let place = |(index, node): (usize, &Node)| node.mesh.map(|mesh| Instance { mesh, node: index as u32, transform: world[index] });
+        self.nodes.iter().enumerate().filter_map(place).collect()
+    }
+
+    fn placed_lights(&self, world: &[Affine3A]) -> Vec<PlacedLight> {
+        let place = |(index, node): (usize, &Node)| {
+            node.light.map(|light| PlacedLight {
+                light,
+                position: world[index].translation.into(),
+                direction: Vec3::from(-world[index].matrix3.z_axis).try_normalize().unwrap_or(Vec3::NEG_Z),
+            })
+        };
+        self.nodes.iter().enumerate().filter_map(place).collect()
+    }
+
+    fn camera(&self, world: &[Affine3A], name: Option<&str>) -> Result<Camera, SceneError> {
+        let mut placed = self.placed_cameras();
+        let found = match name {
+            None => placed.next().ok_or(SceneError::NoCamera)?,
+            Some(name) => placed
+                .find(|&(_, camera)| self.cameras[camera].name == name)
+                .ok_or_else(|| SceneError::UnknownCamera { name: name.to_owned(), known: self.camera_names() })?,
+        };
+        let lens = &self.cameras[found.1];
+        let to_world = rigid(&world[found.0]).ok_or_else(|| SceneError::FlatCamera { name: lens.name.clone() })?;
+        Ok(Camera { to_world, vertical_fov: lens.vertical_fov, near: lens.near })
+    }
+}
+
+impl Node {
+    /// `translation * rotation * scale`.
+    pub fn local_transform(&self) -> Affine3A {
+        Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    }
+}
+
+impl Instance {
+    /// The transform mirrors (its determinant is negative). glTF then lets clockwise faces be front faces: the front normal stays
+    /// `inverse(transform)ᵀ · object normal`, while the cross product of *world* edges points to the back.
+    pub fn mirrors(&self) -> bool {
+        self.transform.matrix3.determinant() < 0.0
+    }
+
+    /// The transform has a finite inverse. Others squash the mesh flat: it cannot be hit and it emits nothing.
+    pub fn is_solid(&self) -> bool {
+        let inverse = self.transform.inverse();
+        self.transform.is_finite() && inverse.is_finite() && self.transform.matrix3.determinant() != 0.0
+    }
+}
+
+/// Keeps place, viewing direction and up, and takes scale, shear and mirroring away; `None` when one of the directions is nothing,
+/// or the place is nowhere.
+fn rigid(transform: &Affine3A) -> Option<Affine3A> {
+    let back = transform.matrix3.z_axis.try_normalize().filter(|_| transform.translation.is_finite())?;
+    let up: Vec3A = transform.matrix3.y_axis.try_normalize()?.reject_from_normalized(back).try_normalize()?;
+    let matrix3 = Mat3A::from_cols(up.cross(back), up, back);
+    Some(Affine3A { matrix3, translation: transform.translation })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Lens;
+    use glam::{Quat, vec3};
+    use std::f32::consts::{FRAC_PI_2, PI};
+
+    fn scene() -> Scene {
+        let root = Node { scale: vec3(2.0, -3.0, 4.0), translation: vec3(1.0, 2.0, 3.0), ..Node::default() };
+        let child = Node {
+            parent: Some(0),
+            rotation: Quat::from_rotation_y(FRAC_PI_2),
+            translation: vec3(1.0, 0.0, 0.0),
+            camera: Some(0),
+            ..Node::default()
+        };
+        let lens = Lens { name: "main".into(), vertical_fov: 1.0, aspect: None, near: 0.1 };
+        Scene { nodes: vec![root, child], cameras: vec![lens], ..Scene::default() }
+    }
+
+    #[test]
+    fn cameras_lose_scale_and_mirroring() {
+        let camera = scene().at(0.0, Some("main")).unwrap().camera;
+        assert!(camera.position().abs_diff_eq(vec3(3.0, 2.0, 3.0), 1e-6));
+        let matrix = camera.to_world.matrix3;
+        assert!((matrix.determinant() - 1.0).abs() < 1e-6);
+        assert!((matrix.transpose() * matrix).abs_diff_eq(Mat3A::IDENTITY, 1e-6));
+        assert!((-matrix.z_axis).abs_diff_eq(glam::vec3a(-1.0, 0.0, 0.0), 1e-6), "looks where −Z went");
+        assert!(matrix.y_axis.abs_diff_eq(glam::vec3a(0.0, -1.0, 0.0), 1e-6), "up is where +Y went");
+    }
+
+    #[test]
+    fn unknown_cameras_are_told_what_there_is() {
+        let error = scene().at(0.0, Some("mian")).unwrap_err();
+        assert_eq!(error.to_string(), "no camera `mian`; the scene has `main`");
+        assert_eq!(Scene::default().at(0.0, None).unwrap_err(), SceneError::NoCamera);
+        assert!(matches!(scene().at(f32::NAN, None), Err(SceneError::Time(_))));
+    }
+
+    #[test]
+    fn the_front_of_a_mirrored_triangle_is_where_the_cross_product_does_not_point() {
+        let corners = [vec3(0.1, 0.2, 0.3), vec3(1.0, 0.0, 0.2), vec3(0.3, 0.9, 0.4)];
+        let cross = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).normalize();
+        for scale in [vec3(1.0, 2.0, 3.0), vec3(-1.0, 2.0, 3.0), vec3(-1.0, -2.0, 3.0), vec3(-1.0, -2.0, -3.0)] {
+            let transform = Affine3A::from_scale_rotation_translation(scale, Quat::from_rotation_x(0.4), Vec3::ONE);
+            let instance = Instance { mesh: 0, node: 0, transform };
+            let front = Vec3::from(transform.inverse().matrix3.transpose() * Vec3A::from(cross(corners))).normalize();
+            let sign = if instance.mirrors() { -1.0 } else { 1.0 };
+            let world = cross(corners.map(|corner| transform.transform_point3(corner)));
+            assert!(front.abs_diff_eq(world * sign, 1e-5), "{scale}");
+        }
+    }
+
+    #[test]
+    fn mirroring_and_flatness_show() {
+        let instance = |scale| Instance { mesh: 0, node: 0, transform: Affine3A::from_scale(scale) };
+        assert!(instance(vec3(1.0, -1.0, 1.0)).mirrors() && instance(vec3(1.0, -1.0, 1.0)).is_solid());
+        assert!(!instance(vec3(-1.0, -1.0, 1.0)).mirrors());
+        assert!(!instance(vec3(1.0, 0.0, 1.0)).is_solid());
+        let turned = Instance { mesh: 0, node: 0, transform: Affine3A::from_rotation_z(PI) };
+        assert!(!turned.mirrors() && turned.is_solid());
+    }
+}

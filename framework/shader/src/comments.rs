@@ -1,0 +1,138 @@
+//! What the comments of a module say: the manual page above it, `///` texts and `@tags` of its declarations, `//! bias:` lines.
+
+use std::collections::HashMap;
+
+/// Text and tags above one declaration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Doc {
+    /// Lines without `@`, joined.
+    pub text: String,
+    /// `@name value` lines.
+    pub tags: Vec<(String, String)>,
+}
+
+/// All comments of one module that mean something to the host.
+#[derive(Debug, Default)]
+pub struct Comments {
+    /// The `//!` lines at the head, less `bias:` and `@tag` ones.
+    pub manual: String,
+    /// Reasons of `//! bias:` lines.
+    pub bias: Vec<String>,
+    docs: HashMap<String, Doc>,
+}
+
+impl Comments {
+    /// Reads one module's text.
+    pub fn read(text: &str) -> Self {
+        let mut found = Comments::default();
+        let mut pending = Doc::default();
+        let mut structure: Option<String> = None;
+        for line in text.lines().map(str::trim) {
+            if let Some(head) = line.strip_prefix("//!") {
+                found.head(head.strip_prefix(' ').unwrap_or(head));
+            } else if let Some(doc) = line.strip_prefix("///") {
+                pending.line(doc.trim());
+            } else if !line.is_empty() && !line.starts_with("//") {
+                if let Some(name) = declared(line, structure.is_some()) {
+                    let key = structure.as_ref().map_or_else(|| name.to_owned(), |outer| format!("{outer}.{name}"));
+                    found.docs.insert(key, std::mem::take(&mut pending));
+                }
+                if !line.starts_with('@') || line.contains(';') || line.contains(',') {
+                    pending = Doc::default();
+                }
+                structure = next_structure(line, structure);
+            }
+        }
+        found
+    }
+
+    /// Of a declaration (`radius`) or a member (`Params.exposure`).
+    pub fn of(&self, name: &str) -> Doc {
+        self.docs.get(name).cloned().unwrap_or_default()
+    }
+
+    fn head(&mut self, line: &str) {
+        match line.strip_prefix("bias:") {
+            Some(why) => self.bias.push(why.trim().to_owned()),
+            None if line.starts_with('@') => {}
+            None => {
+                self.manual.push_str(line);
+                self.manual.push('\n');
+            }
+        }
+    }
+}
+
+impl Doc {
+    fn line(&mut self, line: &str) {
+        match line.strip_prefix('@') {
+            Some(tag) => {
+                let (name, value) = tag.split_once(char::is_whitespace).unwrap_or((tag, ""));
+                self.tags.push((name.to_owned(), value.trim().to_owned()));
+            }
+            None if self.text.is_empty() => self.text = line.to_owned(),
+            None => self.text = format!("{} {line}", self.text),
+        }
+    }
+}
+
+/// The name that a line declares: `var<storage> name`, `override name`, or `name:` within a struct.
+fn declared(line: &str, in_structure: bool) -> Option<&str> {
+    let line = strip_attributes(line);
+    let rest = if in_structure {
+        line
+    } else if let Some(rest) = line.strip_prefix("override ") {
+        rest
+    } else if let Some(rest) = line.strip_prefix("var<") {
+        rest.split_once('>')?.1
+    } else {
+        line.strip_prefix("var ")?
+    };
+    let rest = rest.trim_start();
+    let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+    (end > 0 && rest[end..].trim_start().starts_with(':')).then(|| &rest[..end])
+}
+
+/// Drops leading `@attribute` and `@attribute(arguments)`.
+fn strip_attributes(mut line: &str) -> &str {
+    while let Some(rest) = line.strip_prefix('@') {
+        let name = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let rest = &rest[name..];
+        line = match rest.strip_prefix('(') {
+            Some(arguments) => arguments.split_once(')').map_or("", |(_, after)| after),
+            None => rest,
+        };
+        line = line.trim_start();
+    }
+    line
+}
+
+fn next_structure(line: &str, current: Option<String>) -> Option<String> {
+    let line = strip_attributes(line);
+    if let Some(rest) = line.strip_prefix("struct ") {
+        let name = rest.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next().unwrap_or_default();
+        return (!line.contains('}')).then(|| name.to_owned());
+    }
+    if line.contains('}') { None } else { current }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comments_are_found_where_they_belong() {
+        let text = "//! Tone mapping.\n//!\n//! bias: none of this is linear\nimport package::base::math::{PI};\n\
+            struct Params {\n    /// Stops.\n    /// @default 0\n    /// @range -16 16\n    exposure: f32,\n    plain: u32,\n}\n\
+            @group(1) @binding(0) var<uniform> params: Params;\n/// What comes in.\n/// @optional\n\
+            @group(1) @binding(1) var<storage, read> color: array<vec4<f32>>;\n/// Taps.\n@id(3) override taps: u32 = 5u;\n";
+        let comments = Comments::read(text);
+        assert_eq!(comments.manual, "Tone mapping.\n\n");
+        assert_eq!(comments.bias, ["none of this is linear"]);
+        assert_eq!(comments.of("Params.exposure").tags, [("default".into(), "0".into()), ("range".into(), "-16 16".into())]);
+        assert_eq!(comments.of("Params.plain"), Doc::default());
+        assert_eq!(comments.of("color"), Doc { text: "What comes in.".into(), tags: vec![("optional".into(), String::new())] });
+        assert_eq!(comments.of("taps").text, "Taps.");
+        assert_eq!(comments.of("params"), Doc::default());
+    }
+}

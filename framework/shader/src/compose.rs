@@ -1,0 +1,143 @@
+//! One entry module, linked with what it imports: text, naga module, interface.
+
+use crate::{Interface, Library, ShaderError, locate, reflect, slots};
+use std::{
+    borrow::Cow,
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet},
+};
+use wesl::{
+    CompileOptions, Feature, Features, Mangler, ResolveError, Resolver,
+    syntax::{ModulePath, PathOrigin},
+};
+
+/// Which shader, with what in its slots, for which facts of the scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Specialisation {
+    /// Module path of the entry file, e.g. `pass/temporal`.
+    pub entry: String,
+    /// Slot → filling, e.g. `domain` → `di`. Slots that the shader does not reach may be named.
+    pub slots: BTreeMap<String, String>,
+    /// Names that `@if(name)` finds true.
+    pub features: BTreeSet<String>,
+}
+
+/// A shader ready for a device.
+#[derive(Clone, Debug)]
+pub struct Composed {
+    /// Validated, with final binding numbers.
+    pub module: naga::Module,
+    /// What it asks of its host.
+    pub interface: Interface,
+    /// The linked WGSL, for people; binding numbers are those of the sources.
+    pub text: String,
+}
+
+impl Library {
+    /// Links, validates and reflects one shader.
+    ///
+    /// # Errors
+    /// See [`ShaderError`]; positions are those of the source files.
+    pub fn compose(&self, what: &Specialisation) -> Result<Composed, ShaderError> {
+        self.module(&what.entry)?;
+        let (text, modules) = self.link(what)?;
+        let mut module = naga::front::wgsl::parse_str(&text).map_err(|error| {
+            let span = error.location(&text).map(|place| place.offset as usize);
+            locate::fault(self, &text, span, error.message().to_owned())
+        })?;
+        reflect::number_bindings(&mut module);
+        let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::all())
+            .validate(&module)
+            .map_err(|error| locate::invalid(self, &text, &error))?;
+        let interface = reflect::interface(self, what, &module, &info, &modules)?;
+        Ok(Composed { module, interface, text })
+    }
+
+    /// The linked text and the paths of the modules that it came from.
+    fn link(&self, what: &Specialisation) -> Result<(String, Vec<String>), ShaderError> {
+        let linker = Linker { library: self, slots: &what.slots, entry: &what.entry, fault: RefCell::new(None) };
+        let flags = what.features.iter().map(|name| (name.clone(), Feature::Enable)).collect();
+        let options = CompileOptions {
+            validate: false,
+            features: Features { default: Feature::Disable, flags },
+            ..CompileOptions::default()
+        };
+        let result = wesl::compile_sourcemap(&module_path(&what.entry), &linker, &Names, &options);
+        match (linker.fault.into_inner(), result) {
+            (Some(fault), _) => Err(fault),
+            (None, Err(error)) => Err(ShaderError::Link { message: plain(&error.to_string()) }),
+            (None, Ok(linked)) => {
+                let modules = linked.modules.iter().map(|path| path.components.join("/")).collect();
+                Ok((linked.to_string(), modules))
+            }
+        }
+    }
+}
+
+/// Without the escape sequences that WESL colours its messages with: whoever shows the message decides on colours.
+fn plain(message: &str) -> String {
+    let mut pieces = message.split('\x1b');
+    let first = pieces.next().unwrap_or_default().to_owned();
+    pieces.fold(first, |text, piece| text + piece.split_once('m').map_or("", |(_, rest)| rest))
+}
+
+fn module_path(path: &str) -> ModulePath {
+    ModulePath::new(PathOrigin::Absolute, path.split('/').map(str::to_owned).collect())
+}
+
+/// Gives WESL the library's modules, slots filled.
+struct Linker<'a> {
+    library: &'a Library,
+    slots: &'a BTreeMap<String, String>,
+    entry: &'a str,
+    /// Our own error, which would lose its type on the way through WESL's.
+    fault: RefCell<Option<ShaderError>>,
+}
+
+impl Linker<'_> {
+    fn refuse(&self, path: &ModulePath, error: ShaderError) -> ResolveError {
+        let message = error.to_string();
+        self.fault.borrow_mut().get_or_insert(error);
+        ResolveError::ModuleNotFound(path.clone(), message)
+    }
+}
+
+impl Resolver for Linker<'_> {
+    fn resolve_source<'b>(&'b self, path: &ModulePath) -> Result<Cow<'b, str>, ResolveError> {
+        let name = path.components.join("/");
+        let text = self.library.module(&name).and_then(|module| slots::fill(&module.text, &name, self.slots));
+        text.map(Cow::Owned).map_err(|error| self.refuse(path, error))
+    }
+
+    fn display_name(&self, path: &ModulePath) -> Option<String> {
+        let name = path.components.join("/");
+        let shown = self.library.module(&name).ok().map(|module| module.origin.clone());
+        shown.or_else(|| (name == self.entry).then(|| format!("{name}.wgsl")))
+    }
+}
+
+/// `base/math`'s `PI` becomes `base__math__PI`: readable, and undone by [`unmangle`].
+#[derive(Clone, Copy, Debug)]
+struct Names;
+
+const SEPARATOR: &str = "__";
+
+impl Mangler for Names {
+    fn mangle(&self, path: &ModulePath, item: &str) -> String {
+        let mut name = path.components.join(SEPARATOR);
+        name.push_str(SEPARATOR);
+        name.push_str(item);
+        name
+    }
+
+    fn unmangle(&self, mangled: &str) -> Option<(ModulePath, String)> {
+        let (path, item) = unmangle(mangled)?;
+        Some((module_path(&path), item))
+    }
+}
+
+/// Module path and item of a linked name; `None` for a name of the entry module, which keeps its own.
+pub(crate) fn unmangle(name: &str) -> Option<(String, String)> {
+    let (path, item) = name.rsplit_once(SEPARATOR)?;
+    (!path.is_empty() && !item.is_empty()).then(|| (path.replace(SEPARATOR, "/"), item.to_owned()))
+}

@@ -1,0 +1,153 @@
+//! Fills slot `lights`: the lights of the scene: emissive triangles, punctual lights, the environment.
+//!
+//! A light is sampled in its own uv ∈ [0, 1)²: area-uniform on a triangle, importance-warped on the environment, without meaning
+//! for punctual lights. `Arrival.value` is the integrand's light part in that measure, so that a technique which draws light l
+//! with probability P(l) and uniform uv has the estimator  f·cos · value / P(l)  (times visibility).
+//! @default
+
+import package::base::math::{HUGE, PI, luminance, max3};
+import package::base::sampling::{sample_triangle};
+import package::frame::frame::{NOW, frame};
+import package::scene::geometry::{NONE, instance_at, point_to_world, triangle_infos, triangles};
+import package::scene::material::{DOUBLE_SIDED, emission_at, materials};
+import package::scene::ray::{Hit, Ray, RELATIVE_ERROR};
+@if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance};
+@if(punctual_lights) import package::scene::punctual::{Punctual, punctual_at, punctual_falloff};
+
+struct Light {
+    kind: u32,
+    /// Instance of a triangle, index of a punctual light.
+    index: u32,
+    triangle: u32,
+    /// Probability proportional to emitted power.
+    pmf: f32,
+    /// Vose's alias table: the entry keeps itself below `threshold`, else it is `other`.
+    threshold: f32,
+    other: u32,
+}
+
+const TRIANGLE: u32 = 0u;
+const PUNCTUAL: u32 = 1u;
+const ENVIRONMENT: u32 = 2u;
+
+@group(0) @binding(0) var<storage, read> lights: array<Light>;
+
+/// One point of a light.
+struct LightPoint {
+    /// World position; of lights at infinity, the unit direction towards them.
+    position: vec3<f32>,
+    infinite: bool,
+    /// Unit normal of the emitting side; 0 where the light has none.
+    normal: vec3<f32>,
+    /// World area of a triangle; of the environment dω/duv; 0 for punctual lights.
+    area: f32,
+    /// Radiance of triangle or environment, intensity of point and spot, irradiance of a directional light.
+    emission: vec3<f32>,
+    double_sided: bool,
+    size: f32,
+    light: u32,
+}
+
+/// What a light point sends to a receiver, before the BSDF and visibility.
+struct Arrival {
+    /// Unit, from receiver to light.
+    direction: vec3<f32>,
+    /// The light part of the integrand by uv: radiance · dω/duv.
+    value: vec3<f32>,
+    /// dω/duv at the receiver; 0 for punctual lights.
+    jacobian: f32,
+}
+
+fn light_count() -> u32 {
+    return frame.lights;
+}
+
+fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
+    let light = lights[id];
+    var p: LightPoint;
+    p.light = id;
+    @if(punctual_lights) {
+        if (light.kind == PUNCTUAL) {
+            let l = punctual_at(light.index, when);
+            p.infinite = l.kind == 0u;
+            p.position = select(l.position, -l.direction, p.infinite);
+            p.emission = l.intensity;
+            return p;
+        }
+    }
+    @if(environment) {
+        if (light.kind == ENVIRONMENT) {
+            p.infinite = true;
+            p.position = environment_direction(uv);
+            p.area = environment_jacobian(p.position);
+            p.emission = environment_radiance(p.position);
+            return p;
+        }
+    }
+    return triangle_point(light, id, sample_triangle(uv), when);
+}
+
+fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> LightPoint {
+    let instance = instance_at(light.index, when);
+    let t = triangles[light.triangle];
+    let a = point_to_world(instance, t.a);
+    let b = point_to_world(instance, t.b);
+    let c = point_to_world(instance, t.c);
+    let n = cross(b - a, c - a) * select(1.0, -1.0, instance.mirrored != 0u);
+    let material = triangle_infos[light.triangle].material;
+    var p: LightPoint;
+    p.position = a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
+    p.normal = normalize(n);
+    p.area = 0.5 * length(n);
+    p.emission = emission_at(material, light.triangle, barycentrics);
+    p.double_sided = (materials[material].flags & DOUBLE_SIDED) != 0u;
+    p.size = max(max3(abs(a)), max(max3(abs(b)), max3(abs(c))));
+    p.light = id;
+    return p;
+}
+
+fn arrive(p: LightPoint, from_position: vec3<f32>) -> Arrival {
+    if (p.infinite) {
+        let jacobian = p.area;
+        return Arrival(p.position, p.emission * select(1.0, jacobian, jacobian > 0.0), jacobian);
+    }
+    let d = p.position - from_position;
+    let d2 = dot(d, d);
+    if (d2 <= 0.0) { return Arrival(vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(0.0), 0.0); }
+    let direction = d * inverseSqrt(d2);
+    if (p.area == 0.0) { return Arrival(direction, p.emission * (falloff(p, direction, d2) / d2), 0.0); }
+    let cosine = -dot(p.normal, direction);
+    let facing = select(max(cosine, 0.0), abs(cosine), p.double_sided);
+    let jacobian = facing * p.area / d2;
+    return Arrival(direction, p.emission * jacobian, jacobian);
+}
+
+/// Spot cone and range window of a punctual light.
+fn falloff(p: LightPoint, direction: vec3<f32>, d2: f32) -> f32 {
+    @if(punctual_lights) { return punctual_falloff(lights[p.light].index, direction, d2); }
+    return 1.0;
+}
+
+/// The ray whose being clear means that the light point is seen; it ends just before the light. `origin` has left its own surface.
+fn shadow_ray(origin: vec3<f32>, p: LightPoint) -> Ray {
+    if (p.infinite) { return Ray(origin, HUGE, p.position); }
+    let step = RELATIVE_ERROR * max(p.size, max3(abs(p.position)));
+    let side = select(-step, step, dot(p.normal, origin - p.position) >= 0.0);
+    let d = p.position + p.normal * side - origin;
+    let distance = length(d);
+    return Ray(origin, distance, d / distance);
+}
+
+/// Which light a hit belongs to, or `NONE`.
+fn light_of(hit: Hit) -> u32 {
+    @if(emissive_meshes) {
+        let rank = triangle_infos[hit.triangle].emissive;
+        if (rank != NONE) { return instance_at(hit.instance, NOW).first_light + rank; }
+    }
+    return NONE;
+}
+
+/// dω/duv of light `id` at a hit of a ray along unit `direction` that began at `origin`.
+fn jacobian_of(id: u32, hit: Hit, origin: vec3<f32>, when: u32) -> f32 {
+    return arrive(triangle_point(lights[id], id, hit.barycentrics, when), origin).jacobian;
+}

@@ -1,0 +1,403 @@
+"""A glTF 2.0 file as a Mitsuba scene.
+
+Conventions
+- Rays see both sides of every surface; the frame of reflection is turned to the viewer. Only emission asks for the
+  side: it leaves the front (counter-clockwise) side, and both sides of a double-sided material.
+- emissiveFactor × KHR_materials_emissive_strength is radiance; KHR_lights_punctual as in gltf_lights.py.
+- A camera looks down −Z of its node, +Y up; scale in the node is ignored; yfov holds for the height of the film,
+  whatever the camera's aspectRatio.
+- Primitives without normals are flat. A mirroring node swaps the winding, as section 3.7.4 asks.
+- Opacity: MASK is thresholded after filtering, BLEND is coverage.
+- An environment map is a file beside the glTF (`environment=`): equirectangular, u = 0.5 + atan2(x, −z) / 2π,
+  v = acos(y) / π, bilinear between texel centres.
+Not converted, with an error: KHR_materials_unlit, two UV sets in one material, different wrapping in u and v, opacity
+of vertex colours, textures of KHR_materials_specular, other extensionsRequired. Skins, morph targets and animation are
+left in the rest pose, with a warning.
+"""
+
+import io
+import math
+import sys
+
+import numpy as np
+import PIL.Image
+
+from blocks import LUMINANCE
+from gltf_file import GltfFile, Unsupported
+from variant import mi
+
+KNOWN_EXTENSIONS = {'KHR_lights_punctual', 'KHR_materials_emissive_strength', 'KHR_materials_ior',
+                    'KHR_materials_specular', 'KHR_texture_transform'}
+WRAP = {10497: 'repeat', 33071: 'clamp', 33648: 'mirror'}
+NEAREST = {9728, 9984, 9986}
+
+
+def load(path, size, camera=None, environment=None):
+    """Returns (Mitsuba scene, whether any surface has opacity)."""
+    file = GltfFile(path)
+    check_extensions(file)
+    nodes = list(file.nodes())
+    surfaces = gather_surfaces(file, nodes)
+    scene = {'type': 'scene', 'sensor': sensor(file, nodes, size, camera)}
+    materials = Materials(file)
+    lights = punctual_lights(file, nodes)
+    for index, surface in surfaces.items():
+        light = materials.light(index, surface)
+        if light:
+            lights[f'surface light of material {index}'] = light
+    bounds = np.concatenate([s['positions'] for s in surfaces.values()]) if surfaces else np.zeros((1, 3))
+    radius = 0.5 * np.linalg.norm(bounds.max(axis=0) - bounds.min(axis=0))
+    if environment:
+        lights['environment'] = environment_light(environment)
+    share_samples(lights, radius)
+    see_through = False
+    for index, surface in surfaces.items():
+        see_through |= materials.opacity(index) is not None
+        light = lights.pop(f'surface light of material {index}', None)
+        scene[f'surface_{index}'] = mesh(index, surface, materials.bsdf(index, surface), light)
+    for number, light in enumerate(lights.values()):
+        scene[f'light_{number}'] = light
+    return mi.load_dict(scene), see_through
+
+
+def check_extensions(file):
+    unknown = set(file.json.get('extensionsRequired', [])) - KNOWN_EXTENSIONS
+    if unknown:
+        raise Unsupported(f'extensionsRequired: {", ".join(sorted(unknown))}')
+    for kind in ('animations', 'skins'):
+        if file.json.get(kind):
+            print(f'warning: {kind} are ignored, the rest pose is used', file=sys.stderr)
+
+
+# Geometry
+
+def gather_surfaces(file, nodes):
+    """All triangles in world space, by material (None: glTF's default material)."""
+    parts = {}
+    for _, node, world in nodes:
+        if 'mesh' not in node:
+            continue
+        for primitive in file.get('meshes', node['mesh'])['primitives']:
+            part = read_primitive(file, primitive, world)
+            if part:
+                parts.setdefault(primitive.get('material'), []).append(part)
+    return {index: join(list_) for index, list_ in parts.items()}
+
+
+def read_primitive(file, primitive, world):
+    """One primitive as unindexed corners: positions, normals, and uvs, colors where present."""
+    if 'targets' in primitive:
+        print('warning: morph targets are ignored', file=sys.stderr)
+    attributes = {name: file.accessor(index) for name, index in primitive['attributes'].items()}
+    count = len(attributes['POSITION'])
+    order = file.accessor(primitive['indices'])[:, 0] if 'indices' in primitive else np.arange(count)
+    triangles = to_triangles(order.astype(np.int64), primitive.get('mode', 4))
+    if len(triangles) == 0:
+        return None
+    linear = world[:3, :3]
+    if np.linalg.det(linear) < 0:
+        triangles = triangles[:, [0, 2, 1]]
+    corners = triangles.reshape(-1)
+    positions = (attributes['POSITION'] @ linear.T + world[:3, 3])[corners]
+    if 'NORMAL' in attributes:
+        normals = (attributes['NORMAL'] @ np.linalg.inv(linear))[corners]
+    else:
+        a, b, c = positions.reshape(-1, 3, 3).transpose(1, 0, 2)
+        normals = np.repeat(np.cross(b - a, c - a), 3, axis=0)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    part = {'positions': positions, 'normals': normals / np.where(length > 0, length, 1)}
+    for name in ('TEXCOORD_0', 'TEXCOORD_1'):
+        if name in attributes:
+            part[name] = attributes[name][corners].astype(np.float64)
+    if 'COLOR_0' in attributes:
+        if attributes['COLOR_0'].shape[1] == 4 and not np.all(attributes['COLOR_0'][:, 3] == 1):
+            raise Unsupported('vertex colours with opacity')
+        part['COLOR_0'] = attributes['COLOR_0'][corners].astype(np.float64)
+    if 'TANGENT' in attributes:
+        tangents = attributes['TANGENT'][corners].astype(np.float64)
+        handedness = tangents[:, 3:] * np.sign(np.linalg.det(linear))
+        part['TANGENT'] = np.concatenate([tangents[:, :3] @ linear.T, handedness], axis=1)
+    return drop_degenerate(part)
+
+
+def to_triangles(order, mode):
+    """Section 3.7.2.1: lists, strips and fans; points and lines have no surface."""
+    if mode == 4:
+        return order[:len(order) // 3 * 3].reshape(-1, 3)
+    if mode == 5:
+        strip = np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
+        strip[1::2] = strip[1::2][:, [1, 0, 2]]
+        return strip
+    if mode == 6:
+        return np.stack([order[1:-1], order[2:], np.full(len(order) - 2, order[0])], axis=1)
+    print('warning: a primitive of points or lines is dropped', file=sys.stderr)
+    return np.empty((0, 3), np.int64)
+
+
+def drop_degenerate(part):
+    a, b, c = part['positions'].reshape(-1, 3, 3).transpose(1, 0, 2)
+    keep = np.repeat(np.linalg.norm(np.cross(b - a, c - a), axis=1) > 0, 3)
+    return {name: array[keep] for name, array in part.items()} if keep.any() else None
+
+
+def join(parts):
+    """Concatenates; an attribute that only some parts have gets its neutral value in the others."""
+    names = {name for part in parts for name in part}
+    if 'TANGENT' in names and not all('TANGENT' in part for part in parts):
+        raise Unsupported('a material whose primitives have tangents only in part')
+    joined = {}
+    for name in names:
+        width = next(part[name].shape[1] for part in parts if name in part)
+        neutral = 1.0 if name == 'COLOR_0' else 0.0
+        columns = [part.get(name, np.full((len(part['positions']), width), neutral)) for part in parts]
+        if name == 'COLOR_0':
+            columns = [column[:, :3] for column in columns]
+        joined[name] = np.concatenate(columns)
+    return joined
+
+
+def mesh(name, surface, bsdf, light):
+    """A Mitsuba mesh with its material and, if it shines, its emitter."""
+    props = mi.Properties()
+    props['bsdf'] = mi.load_dict(bsdf)
+    if light:
+        props['emitter'] = mi.load_dict(light)
+    count = len(surface['positions'])
+    uvs = surface.get('uvs')
+    shape = mi.Mesh(f'material {name}', count, count // 3, props, True, uvs is not None)
+    if 'COLOR_0' in surface:
+        shape.add_attribute('vertex_color', 3, mi.Float(surface['COLOR_0'].astype(np.float32).ravel()))
+    if 'TANGENT' in surface:
+        shape.add_attribute('vertex_tangent', 3, mi.Float(surface['TANGENT'][:, :3].astype(np.float32).ravel()))
+        shape.add_attribute('vertex_handedness', 1, mi.Float(surface['TANGENT'][:, 3].astype(np.float32)))
+    params = mi.traverse(shape)
+    params['vertex_positions'] = mi.Float(surface['positions'].astype(np.float32).ravel())
+    params['vertex_normals'] = mi.Float(surface['normals'].astype(np.float32).ravel())
+    params['faces'] = mi.UInt32(np.arange(count, dtype=np.uint32))
+    if uvs is not None:
+        params['vertex_texcoords'] = mi.Float(uvs.astype(np.float32).ravel())
+    params.update()
+    return shape
+
+
+# Materials
+
+class Materials:
+    """Turns materials into `gltf_pbr` and `gltf_surface` plugins."""
+
+    def __init__(self, file):
+        self.file = file
+        self.pixels = {}
+
+    def material(self, index):
+        return {} if index is None else self.file.get('materials', index)
+
+    def bsdf(self, index, surface):
+        material = self.material(index)
+        if 'KHR_materials_unlit' in material.get('extensions', {}):
+            raise Unsupported(f'/materials/{index}: KHR_materials_unlit')
+        self.choose_uvs(index, surface)
+        pbr = material.get('pbrMetallicRoughness', {})
+        base = np.array(pbr.get('baseColorFactor', [1, 1, 1, 1]), np.float64)
+        plugin = {'type': 'gltf_pbr', 'vertex_color': 'COLOR_0' in surface}
+        plugin['base_color'] = self.texture(pbr.get('baseColorTexture'), lambda t: srgb_to_linear(t[..., :3]) * base[:3]) \
+            or {'type': 'rgb', 'value': base[:3].tolist()}
+        packed = pbr.get('metallicRoughnessTexture')
+        for name, key, channel in (('roughness', 'roughnessFactor', 1), ('metallic', 'metallicFactor', 2)):
+            factor = pbr.get(key, 1.0)
+            plugin[name] = self.texture(packed, lambda t: t[..., channel:channel + 1] * factor) or float(factor)
+        if 'normalTexture' in material:
+            plugin['normal_map'] = self.texture(material['normalTexture'], lambda t: t[..., :3])
+            plugin['vertex_tangent'] = 'TANGENT' in surface
+            plugin['normal_scale'] = float(material['normalTexture'].get('scale', 1.0))
+        opacity = self.opacity(index)
+        if opacity is not None:
+            plugin['opacity'], plugin['cutoff'] = opacity
+        extensions = material.get('extensions', {})
+        plugin['ior'] = float(extensions.get('KHR_materials_ior', {}).get('ior', 1.5))
+        specular = extensions.get('KHR_materials_specular', {})
+        if 'specularTexture' in specular or 'specularColorTexture' in specular:
+            raise Unsupported(f'/materials/{index}/extensions/KHR_materials_specular: textures')
+        plugin['specular'] = float(specular.get('specularFactor', 1.0))
+        plugin['specular_color'] = mi.ScalarColor3f(specular.get('specularColorFactor', [1.0, 1.0, 1.0]))
+        return plugin
+
+    def opacity(self, index):
+        """(texture or number, cutoff); None where the surface is whole. Cutoff −1 stands for BLEND."""
+        material = self.material(index)
+        mode = material.get('alphaMode', 'OPAQUE')
+        if mode == 'OPAQUE':
+            return None
+        pbr = material.get('pbrMetallicRoughness', {})
+        factor = pbr.get('baseColorFactor', [1, 1, 1, 1])[3]
+        value = self.texture(pbr.get('baseColorTexture'), lambda t: t[..., 3:4] * factor) or float(factor)
+        return value, float(material.get('alphaCutoff', 0.5)) if mode == 'MASK' else -1.0
+
+    def light(self, index, surface):
+        """The emitter of a material, or None."""
+        material = self.material(index)
+        strength = material.get('extensions', {}).get('KHR_materials_emissive_strength', {}).get('emissiveStrength', 1.0)
+        radiance = np.array(material.get('emissiveFactor', [0, 0, 0]), np.float64) * strength
+        if not radiance.any():
+            return None
+        self.choose_uvs(index, surface)
+        a, b, c = surface['positions'].reshape(-1, 3, 3).transpose(1, 0, 2)
+        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+        double_sided = material.get('doubleSided', False)
+        texture = self.texture(material.get('emissiveTexture'), lambda t: srgb_to_linear(t[..., :3]) * radiance)
+        power = math.pi * area * (LUMINANCE @ radiance) * (2 if double_sided else 1)
+        if texture is None and not double_sided:
+            return {'type': 'area', 'radiance': {'type': 'rgb', 'value': radiance.tolist()}, 'power': power}
+        return {'type': 'gltf_surface', 'double_sided': double_sided, 'power': power,
+                'radiance': texture or {'type': 'rgb', 'value': radiance.tolist()}}
+
+    def references(self, index):
+        """All uses of textures in a material."""
+        material = self.material(index)
+        pbr = material.get('pbrMetallicRoughness', {})
+        uses = [pbr.get('baseColorTexture'), pbr.get('metallicRoughnessTexture'), material.get('normalTexture'),
+                material.get('emissiveTexture')]
+        return [use for use in uses if use]
+
+    def choose_uvs(self, index, surface):
+        """Mitsuba's meshes hold one set of coordinates."""
+        sets = {self.transform(use)[0] for use in self.references(index)}
+        if len(sets) > 1:
+            raise Unsupported(f'/materials/{index}: two sets of texture coordinates')
+        if sets:
+            name = f'TEXCOORD_{sets.pop()}'
+            surface['uvs'] = surface.get(name, np.zeros((len(surface['positions']), 2)))
+
+    def transform(self, use):
+        """(uv set, matrix) of one use: KHR_texture_transform, translation · rotation · scale.
+
+        The extension turns counter-clockwise as seen on the image, whose v grows downwards."""
+        extension = use.get('extensions', {}).get('KHR_texture_transform', {})
+        angle = extension.get('rotation', 0.0)
+        c, s = math.cos(angle), math.sin(angle)
+        matrix = np.eye(3)
+        matrix[:2, :2] = np.array([[c, s], [-s, c]]) * np.array(extension.get('scale', [1.0, 1.0]))
+        matrix[:2, 2] = extension.get('offset', [0.0, 0.0])
+        return extension.get('texCoord', use.get('texCoord', 0)), matrix
+
+    def texture(self, use, channels):
+        """A bitmap plugin of linear floats, or None; `channels` maps stored RGBA in [0, 1] to what is wanted."""
+        if use is None:
+            return None
+        texture = self.file.get('textures', use['index'])
+        sampler = self.file.get('samplers', texture['sampler']) if 'sampler' in texture else {}
+        wrap = {WRAP[sampler.get(key, 10497)] for key in ('wrapS', 'wrapT')}
+        if len(wrap) > 1:
+            raise Unsupported('a sampler that wraps differently in u and v')
+        pixels = np.ascontiguousarray(channels(self.image(texture['source'])).astype(np.float32))
+        return {'type': 'bitmap', 'data': mi.TensorXf(pixels), 'raw': True, 'wrap_mode': wrap.pop(),
+                'filter_type': 'nearest' if sampler.get('magFilter', 9729) in NEAREST else 'bilinear',
+                'to_uv': mi.ScalarTransform3f(self.transform(use)[1])}
+
+    def image(self, index):
+        if index not in self.pixels:
+            self.pixels[index] = decode_image(self.file.image_bytes(index))
+        return self.pixels[index]
+
+
+def decode_image(data):
+    """PNG or JPEG to RGBA in [0, 1], as stored."""
+    image = PIL.Image.open(io.BytesIO(data))
+    if image.mode in ('I;16', 'I'):
+        grey = np.asarray(image, np.float64)[..., None] / 65535
+        return np.concatenate([grey, grey, grey, np.ones_like(grey)], axis=2)
+    return np.asarray(image.convert('RGBA'), np.float64) / 255
+
+
+def srgb_to_linear(encoded):
+    """IEC 61966-2-1."""
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055)**2.4)
+
+
+# Lights and camera
+
+def punctual_lights(file, nodes):
+    """KHR_lights_punctual; each shines down −Z of its node, scale changes nothing."""
+    lights = {}
+    defined = file.json.get('extensions', {}).get('KHR_lights_punctual', {}).get('lights', [])
+    for index, node, world in nodes:
+        use = node.get('extensions', {}).get('KHR_lights_punctual')
+        if not use:
+            continue
+        light = defined[use['light']]
+        intensity = np.array(light.get('color', [1, 1, 1]), np.float64) * light.get('intensity', 1.0)
+        direction = -world[:3, 2] / np.linalg.norm(world[:3, 2])
+        lights[f'light of node {index}'] = punctual_light(light, intensity, world[:3, 3], direction)
+    return lights
+
+
+def punctual_light(light, intensity, position, direction):
+    luminance = LUMINANCE @ intensity
+    if light['type'] == 'directional':
+        return {'type': 'directional', 'direction': direction.tolist(), 'irradiance': luminance,
+                'spectrum': intensity.tolist()}
+    plugin = {'type': 'gltf_punctual', 'position': mi.ScalarPoint3f(position), 'direction': mi.ScalarVector3f(direction),
+              'intensity': mi.ScalarColor3f(intensity), 'range': float(light.get('range', 0.0)),
+              'power': 4 * math.pi * luminance}
+    if light['type'] == 'spot':
+        spot = light.get('spot', {})
+        outer = spot.get('outerConeAngle', math.pi / 4)
+        plugin['cos_inner'] = math.cos(spot.get('innerConeAngle', 0.0))
+        plugin['cos_outer'] = math.cos(outer)
+        plugin['power'] = 2 * math.pi * (1 - math.cos(outer)) * luminance
+    return plugin
+
+
+def environment_light(path):
+    """Mitsuba's map has its first texel centre at u = 0 and looks the other way round: resample finer onto that grid."""
+    image = np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False), np.float64)
+    height, width = image.shape[:2]
+    factor = max(1, min(4, 4096 // width))
+    u = (np.arange(width * factor) / (width * factor) + 0.5) % 1.0 * width - 0.5
+    v = np.clip(np.arange(height * factor) / (height * factor - 1) * height - 0.5, 0, height - 1)
+    left, top = np.floor(u).astype(int), np.minimum(np.floor(v).astype(int), height - 2)
+    du, dv = (u - left)[None, :, None], (v - top)[:, None, None]
+    rows = image[top] * (1 - dv) + image[top + 1] * dv
+    fine = rows[:, left % width] * (1 - du) + rows[:, (left + 1) % width] * du
+    weight = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None, None]
+    mean = (image * weight).sum(axis=(0, 1)) / (weight.sum() * width)
+    return {'type': 'envmap', 'bitmap': mi.Bitmap(np.ascontiguousarray(fine.astype(np.float32))),
+            'irradiance': math.pi * (LUMINANCE @ mean)}
+
+
+def share_samples(lights, radius):
+    """How often each light is drawn: half by power, half evenly. Removes the keys that Mitsuba does not know."""
+    power = {}
+    for name, light in lights.items():
+        irradiance = light.pop('irradiance', None)
+        power[name] = light.pop('power') if irradiance is None else math.pi * radius**2 * irradiance
+        if 'spectrum' in light:
+            light['irradiance'] = {'type': 'rgb', 'value': light.pop('spectrum')}
+    total = sum(power.values())
+    for name, light in lights.items():
+        light['sampling_weight'] = 0.5 * power[name] / total + 0.5 / len(lights)
+
+
+def sensor(file, nodes, size, name):
+    """The camera of that name (the node's or the camera's own), else the first one."""
+    choices = []
+    for index, node, world in nodes:
+        if 'camera' in node:
+            camera = file.get('cameras', node['camera'])
+            choices.append(({node.get('name'), camera.get('name')}, camera, world))
+    chosen = [choice for choice in choices if name is None or name in choice[0]]
+    if not chosen:
+        raise Unsupported(f'no camera {name or ""}; the file has {[sorted(map(str, c[0])) for c in choices]}')
+    _, camera, world = chosen[0]
+    if camera['type'] != 'perspective':
+        raise Unsupported(f'a camera of type {camera["type"]}')
+    to_world = np.eye(4)
+    to_world[:3, :3] = world[:3, :3] / np.linalg.norm(world[:3, :3], axis=0)
+    to_world[:3, 3] = world[:3, 3]
+    # Mitsuba's camera looks down +Z with +X to the left: half a turn about Y.
+    to_world = to_world @ np.diag([-1.0, 1.0, -1.0, 1.0])
+    return {'type': 'perspective', 'fov_axis': 'y', 'fov': math.degrees(camera['perspective']['yfov']),
+            'near_clip': 1e-3, 'far_clip': 1e6, 'to_world': mi.ScalarTransform4f(to_world),
+            'film': {'type': 'hdrfilm', 'width': size[0], 'height': size[1], 'pixel_format': 'rgb',
+                     'component_format': 'float32', 'rfilter': {'type': 'box'}},
+            'sampler': {'type': 'independent'}}

@@ -1,0 +1,23 @@
+#!/bin/sh
+# Renders the references that the tests compare with: references/SCENE-TRANSPORT.exr, 64×36.
+#
+#     ./make_references.sh FOLDER [SCENE …]
+#
+# FOLDER holds SCENE.glb and, where the scene has one, its environment SCENE.exr (`aquifer scenes` writes both).
+# A reference that shows the same .glb is left alone. PYTHON names the interpreter.
+set -eu
+folder=$(cd "$1" && pwd)
+shift
+[ $# -gt 0 ] || set -- cornell glossy
+cd "$(dirname "$0")"
+mkdir -p references
+for scene in "$@"; do
+    environment=
+    [ ! -e "$folder/$scene.exr" ] || environment="--environment $folder/$scene.exr"
+    for transport in direct indirect:2 full:4; do
+        output=references/$scene-$(echo "$transport" | tr -d :).exr
+        # shellcheck disable=SC2086 # the option and its value are two words
+        "${PYTHON:-python3}" render.py "$folder/$scene.glb" $environment --transport "$transport" --size 64x36 \
+            --spp 262144 --batches 512 --target 0.003 --keep -o "$output"
+    done
+done

@@ -1,0 +1,1 @@
+//! The test harness: one compiled binary family that shares an adapter.

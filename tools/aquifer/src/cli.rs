@@ -1,0 +1,91 @@
+//! What can be typed.
+
+use crate::{
+    command::{adapters, check, completions, diff, dot, graphs, man, merge, passes, render, scenes},
+    failure::Failure,
+    ui::Ui,
+};
+use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand};
+
+/// Compare reservoir-based resampling (ReSTIR) honestly: render graphs are text files, and their parts are interchangeable.
+#[derive(Debug, Parser)]
+#[command(name = "aquifer", version, propagate_version = true, max_term_width = 110, after_help = EXIT_CODES)]
+pub struct Cli {
+    #[command(flatten)]
+    pub global: Global,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 used wrongly, 75 failed for now (device lost, out of memory: try again).
+Data goes to stdout, messages go to stderr. NO_COLOR is honoured.";
+
+/// Options of every command.
+#[derive(Debug, Args)]
+pub struct Global {
+    /// Colour in messages
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto", help_heading = "Messages")]
+    pub color: ColorChoice,
+    /// Say more; twice for everything
+    #[arg(short, long, global = true, action = ArgAction::Count, help_heading = "Messages")]
+    pub verbose: u8,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene with a graph
+    Render(render::Args),
+    /// Check a graph, and say whether it is unbiased
+    Check(check::Args),
+    /// Draw a graph in Graphviz's language
+    Dot(dot::Args),
+    /// List the kinds of passes, or show one's manual page
+    Passes(passes::Args),
+    /// List the built-in graphs, or print one
+    Graphs(graphs::Args),
+    /// List, describe and export scenes
+    Scenes(scenes::Args),
+    /// List the graphics adapters of this machine
+    Adapters(adapters::Args),
+    /// Combine renders of the same thing, made with other frames or seeds
+    Merge(merge::Args),
+    /// Measure how far one image is from another
+    Diff(diff::Args),
+    /// Print completions for a shell
+    #[command(hide = true)]
+    Completions(completions::Args),
+    /// Print the manual page
+    #[command(hide = true)]
+    Man(man::Args),
+}
+
+impl Command {
+    /// Does it.
+    pub fn run(self, ui: &Ui) -> Result<(), Failure> {
+        match self {
+            Self::Render(args) => render::run(args, ui),
+            Self::Check(args) => check::run(args, ui),
+            Self::Dot(args) => dot::run(args, ui),
+            Self::Passes(args) => passes::run(args, ui),
+            Self::Graphs(args) => graphs::run(args, ui),
+            Self::Scenes(args) => scenes::run(args, ui),
+            Self::Adapters(args) => adapters::run(args, ui),
+            Self::Merge(args) => merge::run(args, ui),
+            Self::Diff(args) => diff::run(args, ui),
+            Self::Completions(args) => completions::run(args, ui),
+            Self::Man(args) => man::run(args, ui),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_grammar_is_sound() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,13 @@
+//! One file for every subcommand.
+
+pub mod adapters;
+pub mod check;
+pub mod completions;
+pub mod diff;
+pub mod dot;
+pub mod graphs;
+pub mod man;
+pub mod merge;
+pub mod passes;
+pub mod render;
+pub mod scenes;

@@ -1,0 +1,33 @@
+//! `aquifer check GRAPH`
+
+use crate::{failure::Failure, source::GraphArgs, ui::Ui};
+use aquifer_graph::{Graph, NeedsAll, Plan};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    graph: GraphArgs,
+    /// Print the checked graph as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
+    let (graph, _) = args.graph.check(None)?;
+    let plan = graph.plan(&NeedsAll, &[])?;
+    if args.json { ui.json(&graph.to_json()) } else { ui.print(&report(&graph, &plan)) }
+}
+
+fn report(graph: &Graph, plan: &Plan) -> String {
+    let mut lines = vec![format!("{} ({})", graph.title(), graph.transport()), String::new()];
+    lines.extend(plan.steps.iter().map(|step| format!("  {}", step.node)));
+    lines.extend(plan.left_out.iter().map(|left| format!("  {} is left out: {}", left.node, left.reason)));
+    lines.push(String::new());
+    let bias = graph.bias();
+    match bias.as_slice() {
+        [] => lines.push("unbiased".to_owned()),
+        _ => lines.push("biased, because".to_owned()),
+    }
+    lines.extend(bias.iter().map(|finding| format!("  {}: pass `{}`, {}: {}", finding.place, finding.pass, finding.what, finding.why)));
+    lines.join("\n")
+}

@@ -1,0 +1,140 @@
+//! What commands are given: graphs, scenes and shaders, by name or by file.
+
+use crate::{failure::Failure, ui::Ui, value};
+use aquifer_graph::{Document, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
+use aquifer_lab::stage;
+use aquifer_render::Registry;
+use aquifer_scene::{Environment, Scene};
+use aquifer_scenes::Generator;
+use std::path::{Path, PathBuf};
+
+/// A graph, with what is laid over it.
+#[derive(Debug, clap::Args)]
+pub struct GraphArgs {
+    /// A built-in graph (see `aquifer graphs`) or a .toml file
+    pub graph: String,
+    /// Set a value of the graph: a parameter (spatial.taps=5) or a slot (slots.mis=pairwise); repeatable
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = value::setting)]
+    pub settings: Vec<String>,
+    /// Which light paths: emission, direct, indirect:N or full:N (N bounces)
+    #[arg(long, value_name = "PATHS", value_parser = value::transport)]
+    pub transport: Option<Transport>,
+    #[command(flatten)]
+    pub shaders: ShaderArgs,
+}
+
+/// Shaders beside the built-in ones.
+#[derive(Debug, clap::Args)]
+pub struct ShaderArgs {
+    /// A folder of .wgsl files that add to the built-in shaders or replace them; repeatable
+    #[arg(long = "shaders", value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+}
+
+/// A scene.
+#[derive(Debug, clap::Args)]
+pub struct SceneArgs {
+    /// A built-in scene (see `aquifer scenes list`) or a .glb or .gltf file
+    #[arg(long, value_name = "SCENE", default_value = "cornell")]
+    pub scene: String,
+    /// Light from an equirectangular .exr or .hdr file, in place of the scene's own environment
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
+}
+
+impl GraphArgs {
+    /// The graph's text with everything laid over it.
+    pub fn document(&self) -> Result<Document, Failure> {
+        let mut document = Document::load(&file_name(&self.graph), &files())?;
+        let transport = self.transport.map(|transport| Source::new("--transport", format!("transport={transport}")));
+        let settings = self.settings.iter().map(|text| Source::new("--set", text));
+        document.apply(transport.into_iter().chain(settings))?;
+        Ok(document)
+    }
+
+    /// The graph, checked against the shaders that a scene needs.
+    pub fn check(&self, scene: Option<&Scene>) -> Result<(Graph, Registry), Failure> {
+        let registry = self.shaders.registry(scene)?;
+        let graph = Graph::check(&self.document()?, &registry)?;
+        Ok((graph, registry))
+    }
+}
+
+impl ShaderArgs {
+    /// Built-in shaders and passes with those of the folders over them, for a scene or for any.
+    pub fn registry(&self, scene: Option<&Scene>) -> Result<Registry, Failure> {
+        Ok(stage::registry(scene, &self.folders)?)
+    }
+}
+
+impl SceneArgs {
+    /// The finished scene. Its warnings are shown.
+    pub fn load(&self, ui: &Ui) -> Result<Scene, Failure> {
+        let scene = load_scene(&self.scene, self.environment.as_deref())?;
+        for warning in &scene.warnings {
+            ui.warn(&format!("{}: {warning}", self.scene));
+        }
+        Ok(scene)
+    }
+
+    /// The scene as films name it: a built-in one by its name, a file by its name and the hash of its bytes.
+    pub fn identity(&self) -> Result<String, Failure> {
+        if is_file(&self.scene) { identity(Path::new(&self.scene)) } else { Ok(self.scene.clone()) }
+    }
+
+    /// The environment as films name it.
+    pub fn environment_identity(&self) -> Result<Option<String>, Failure> {
+        self.environment.as_deref().map(identity).transpose()
+    }
+}
+
+/// A built-in scene by name, or a file; finished.
+pub fn load_scene(name: &str, environment: Option<&Path>) -> Result<Scene, Failure> {
+    let environment = environment.map(Environment::load).transpose()?;
+    if is_file(name) {
+        let scene = Scene::load(Path::new(name))?;
+        return match environment {
+            Some(environment) => Ok(Scene { environment: Some(environment), ..scene }),
+            None => Ok(scene),
+        };
+    }
+    let scene = (generator(name)?.make)();
+    let environment = environment.or_else(|| scene.environment.clone());
+    Ok(Scene { environment, ..scene }.finish()?)
+}
+
+/// A built-in scene by name.
+pub fn generator(name: &str) -> Result<&'static Generator, Failure> {
+    aquifer_scenes::by_name(name).ok_or_else(|| unknown_scene(name))
+}
+
+fn unknown_scene(name: &str) -> Failure {
+    let known = aquifer_scenes::all().iter().map(|generator| generator.name);
+    let cure = match nearest(name, known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "`aquifer scenes list` shows them; files end in .glb or .gltf".to_owned(),
+    };
+    Failure::new(format!("there is no scene `{name}`; {cure}"))
+}
+
+fn is_file(scene: &str) -> bool {
+    let extension = Path::new(scene).extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    extension.eq_ignore_ascii_case("glb") || extension.eq_ignore_ascii_case("gltf")
+}
+
+/// A file's name and the first half of the BLAKE3 hash of its bytes.
+fn identity(path: &Path) -> Result<String, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::new(format!("cannot read `{}`: {error}", path.display())))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    Ok(format!("{name} {}", &blake3::hash(&bytes).to_hex()[..32]))
+}
+
+/// Graph files on disk, over the built-in ones.
+pub fn files() -> Layered<FsFiles> {
+    Layered { upper: FsFiles, lower: Shelf::new("built-in", aquifer_graphs::files()) }
+}
+
+/// `path_tracer` is the built-in file `path_tracer.toml`.
+fn file_name(graph: &str) -> String {
+    if graph.ends_with(".toml") || graph.contains(std::path::is_separator) { graph.to_owned() } else { format!("{graph}.toml") }
+}

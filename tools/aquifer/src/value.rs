@@ -1,0 +1,71 @@
+//! Values as they are typed.
+
+use aquifer_graph::Transport;
+use aquifer_lab::film::Format;
+use std::path::{Path, PathBuf};
+
+/// The longest side of an image. A guard against slips of the finger; the adapter's own limits are checked later.
+const LONGEST_SIDE: u32 = 32_768;
+
+/// `256x144`
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text.split_once(['x', 'X', '×']).ok_or("write WIDTHxHEIGHT, e.g. 640x360")?;
+    let side = |digits: &str| match digits.trim().parse::<u32>() {
+        Ok(0) => Err("an image needs at least one pixel".to_owned()),
+        Ok(side) if side <= LONGEST_SIDE => Ok(side),
+        _ => Err(format!("`{digits}` is no number of pixels from 1 to {LONGEST_SIDE}")),
+    };
+    Ok([side(width)?, side(height)?])
+}
+
+/// Seconds, more than none.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    match text.trim_end_matches('s').trim().parse::<f64>() {
+        Ok(seconds) if seconds.is_finite() && seconds > 0.0 => Ok(seconds),
+        _ => Err("write a number of seconds above 0".to_owned()),
+    }
+}
+
+/// Which light paths.
+pub fn transport(text: &str) -> Result<Transport, String> {
+    text.parse().map_err(|error: aquifer_graph::TransportError| error.to_string())
+}
+
+/// A `key=value` of the graph; what it means is checked with the graph.
+pub fn setting(text: &str) -> Result<String, String> {
+    match text.split_once('=') {
+        Some((key, _)) if !key.trim().is_empty() => Ok(text.to_owned()),
+        _ => Err("write PASS.PARAMETER=VALUE, e.g. spatial.taps=5".to_owned()),
+    }
+}
+
+/// An image file to write.
+pub fn image(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    Format::of(path).map_err(|error| error.to_string())?;
+    Ok(path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("256x144"), Ok([256, 144]));
+        assert_eq!(size("1920×1080"), Ok([1920, 1080]));
+        for wrong in ["", "256", "0x144", "256x0", "-1x2", "1x2x3", "99999x1", "ax b", "1.5x2"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn times_and_settings() {
+        assert_eq!((seconds("2.5"), seconds("10 s")), (Ok(2.5), Ok(10.0)));
+        for wrong in ["0", "-1", "inf", "NaN", "soon"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+        assert!(setting("spatial.taps=5").is_ok() && setting("spatial.taps").is_err() && setting("=5").is_err());
+        assert!(image("a/b.EXR").is_ok() && image("a.png").is_ok() && image("a.jpg").is_err() && image("exr").is_err());
+    }
+}

@@ -1,0 +1,14 @@
+//! The command line as a program: what it prints where, how it exits, what it leaves on disk.
+
+#[path = "cli/graphs.rs"]
+mod graphs;
+#[path = "cli/images.rs"]
+mod images;
+#[path = "cli/manners.rs"]
+mod manners;
+#[path = "cli/render.rs"]
+mod render;
+#[path = "cli/run.rs"]
+mod run;
+#[path = "cli/scenes.rs"]
+mod scenes;

@@ -1,0 +1,114 @@
+//! `aquifer render`: needs an adapter, and skips (or, with AQUIFER_REQUIRE_ADAPTER=1, fails) without one.
+
+use crate::run::{Run, aquifer, names};
+use aquifer_lab::film::Film;
+use std::{
+    path::Path,
+    process::{Command, Stdio},
+};
+
+/// Is there an adapter? Says so when a test is skipped for want of one.
+fn adapter() -> bool {
+    let found = !aquifer_render::adapters().is_empty();
+    if !found {
+        assert!(std::env::var_os("AQUIFER_REQUIRE_ADAPTER").is_none(), "no adapter was found, and AQUIFER_REQUIRE_ADAPTER is set");
+        eprintln!("skipped: no adapter was found");
+    }
+    found
+}
+
+fn render(out: &Path, options: &[&str]) -> Run {
+    let out = out.to_string_lossy().into_owned();
+    let args = ["render", "path_tracer", "--scene", "cornell", "--size", "16x9", "--transport", "full:2", "-o", &out];
+    aquifer(&[&args[..], options].concat())
+}
+
+fn assert_close(a: &[[f32; 3]], b: &[[f32; 3]], tolerance: f32) {
+    for (a, b) in a.iter().flatten().zip(b.iter().flatten()) {
+        assert!((a - b).abs() <= tolerance * b.abs(), "{a} {b}");
+    }
+}
+
+#[test]
+fn a_picture_its_numbers_and_what_made_it() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (exr, png) = (folder.path().join("a.exr"), folder.path().join("a.png"));
+    let run = render(&exr, &["--frames", "8", "--seed", "7", "--json", "-o", &png.to_string_lossy()]).succeeds();
+    let summary: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+    assert_eq!((summary["frames"].as_u64(), summary["scene"].as_str()), (Some(8), Some("cornell")));
+    assert!(summary["passes"]["passes"].as_array().is_some_and(|passes| passes.len() >= 3), "{summary}");
+    let film = Film::read(&exr).expect("it was written");
+    assert!(film.color.iter().flatten().all(|x| x.is_finite()) && film.color.iter().flatten().any(|&x| x > 0.0));
+    assert!(film.variance.as_ref().is_some_and(|v| v.iter().flatten().any(|&x| x > 0.0)));
+    let facts = film.facts.expect("it says what made it");
+    assert_eq!((facts.samples_per_pixel, facts.transport.as_str(), facts.camera.as_str()), (8, "full:2", "main"));
+    assert!(facts.graph.text.contains("path_tracer.toml"));
+    assert_eq!(Film::read(&png).expect("it was written").size, [16, 9]);
+    assert_eq!(names(folder.path()), ["a.exr", "a.png"]);
+}
+
+#[test]
+fn equal_seeds_give_equal_bits_and_parts_make_the_whole() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let at = |name: &str| folder.path().join(name);
+    let film = |name: &str, options: &[&str]| {
+        render(&at(name), options).succeeds();
+        Film::read(&at(name)).expect("it was written")
+    };
+    let whole = film("whole.exr", &["--frames", "8"]);
+    assert_eq!(whole.color, film("again.exr", &["--frames", "8"]).color);
+    assert_ne!(whole.color, film("other.exr", &["--frames", "8", "--seed", "1"]).color);
+    film("early.exr", &["--frames", "3"]);
+    film("late.exr", &["--frames", "5", "--first-frame", "3"]);
+    let path = |name: &str| at(name).to_string_lossy().into_owned();
+    aquifer(&["merge", &path("early.exr"), &path("late.exr"), "-o", &path("merged.exr")]).succeeds();
+    let merged = Film::read(&at("merged.exr")).expect("it was written");
+    assert_close(&merged.color, &whole.color, 1e-6);
+    assert_close(merged.variance.as_ref().expect("of 8 frames"), whole.variance.as_ref().expect("of 8 frames"), 1e-4);
+    assert_eq!(merged.facts.map(|facts| facts.runs), whole.facts.map(|facts| facts.runs));
+}
+
+#[test]
+fn failures_leave_nothing_behind() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("a.exr");
+    render(&folder.path().join("no/such/a.exr"), &[]).fails(1, "there is no folder");
+    render(&out, &["--scene", "cornel"]).fails(2, "cannot be used multiple times");
+    render(&out, &["--camera", "nobody"]).fails(1, "nobody");
+    render(&out, &["--set", "path_tracer.bounces=3"]).fails(1, "unknown-param");
+    render(&out, &["--adapter", "no such adapter"]).fails(1, "adapter");
+    render(&out, &["--environment", "gone.hdr"]).fails(1, "gone.hdr");
+    assert!(names(folder.path()).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_render_writes_what_it_has() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("a.exr");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_aquifer"))
+        .args(["render", "path_tracer", "--size", "16x9", "--transport", "direct", "--time", "500", "-o"])
+        .arg(&out)
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program was built with this test");
+    // Listening begins with rendering; a line of progress comes every five seconds and shows that frames are done.
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().expect("it is piped")));
+    let progress = lines.next().expect("progress is told").expect("stderr is UTF-8");
+    assert!(progress.contains("frames/s"), "{progress}");
+    let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is everywhere");
+    assert!(interrupted.success());
+    let rest: Vec<String> = lines.map_while(Result::ok).collect();
+    assert_eq!(child.wait().expect("it ends").code(), Some(0), "{rest:?}");
+    assert!(rest.iter().any(|line| line.contains("interrupted")), "{rest:?}");
+    assert!(Film::read(&out).expect("it was written").facts.is_some_and(|facts| facts.runs.frames() > 0));
+}

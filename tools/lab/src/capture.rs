@@ -1,0 +1,176 @@
+//! From a renderer to films.
+//!
+//! What a graph shows (its output) is display-referred. What it measures lies further up its wires: the running mean of radiance, kept with
+//! its sum of squares by a pass whose output has elements called [`MOMENTS`]. Both are found in the graph, not assumed.
+
+use crate::film::{Film, FilmError};
+use aquifer_graph::{Graph, Plan, PortId, Value, When};
+use aquifer_render::Renderer;
+use std::collections::VecDeque;
+
+/// Element of the resource that holds running means: members `mean`, `count` and `squares`.
+pub const MOMENTS: &str = "Moments";
+
+/// Why no film can be taken.
+#[derive(Debug, thiserror::Error)]
+pub enum CaptureError {
+    /// The renderer cannot give the pixels.
+    #[error(transparent)]
+    Render(#[from] aquifer_render::Error),
+    /// The pixels do not fit the image.
+    #[error(transparent)]
+    Film(#[from] FilmError),
+    /// The output is nothing that can be seen.
+    #[error("output `{name}` holds `{element}`, which is no picture: vec3<f32> or vec4<f32> is")]
+    NoPicture {
+        /// The resource.
+        name: String,
+        /// What it holds.
+        element: String,
+    },
+    /// The resource of running means lacks a member.
+    #[error("`{name}` has no member `{member}`")]
+    NoMember {
+        /// The resource.
+        name: String,
+        /// The member.
+        member: &'static str,
+    },
+}
+
+/// What of a graph makes a film.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Capture {
+    moments: Option<String>,
+    /// Frames do not share samples, so that their spread tells the variance of their mean.
+    independent: bool,
+}
+
+impl Capture {
+    /// Finds the running mean nearest to the graph's output.
+    pub fn of(graph: &Graph) -> Self {
+        let moments = upstream(graph).into_iter().find_map(|node| moments_of(graph, node));
+        let remembers = |(index, node): (usize, &aquifer_graph::Node)| {
+            let averages = moments_of(graph, index).is_some();
+            !averages && node.wires.iter().flatten().any(|wire| wire.when == When::Previous)
+        };
+        Self { moments, independent: !graph.nodes().iter().enumerate().any(remembers) }
+    }
+
+    /// Resources that the plan must keep.
+    pub fn keep(&self) -> Vec<&str> {
+        self.moments.iter().map(String::as_str).collect()
+    }
+
+    /// Samples that every pixel gets in a frame: passes that can take several have a parameter called `samples`.
+    pub fn samples_per_frame(graph: &Graph) -> u32 {
+        let samples = graph.nodes().iter().filter_map(|node| match node.params.get("samples") {
+            Some(&Value::U32(samples)) => Some(samples),
+            _ => None,
+        });
+        samples.max().unwrap_or(1)
+    }
+
+    /// Does the film hold the mean over frames, or only the last frame's output?
+    pub fn averages(&self) -> bool {
+        self.moments.is_some()
+    }
+
+    /// The mean over frames, with its variance where frames are independent; the last frame's output where nothing is averaged.
+    pub fn radiance(&self, renderer: &mut Renderer) -> Result<Film, CaptureError> {
+        let Some(name) = &self.moments else { return self.display(renderer) };
+        let members = Members::of(renderer.plan(), name)?;
+        let words = renderer.read_f32(name)?;
+        let records = || words.chunks_exact(members.stride);
+        let color = records().map(|record| three(record, members.mean)).collect();
+        let counted = self.independent && records().all(|record| record[members.count].to_bits() >= 2);
+        let variance = |record: &[f32]| {
+            let n = f64::from(record[members.count].to_bits());
+            three(record, members.squares).map(|squares| (f64::from(squares) / (n * (n - 1.0))) as f32)
+        };
+        let film = Film::new(renderer.options().size, color)?;
+        Ok(Film { variance: counted.then(|| records().map(variance).collect()), ..film })
+    }
+
+    /// What the graph shows: linear and display-referred.
+    pub fn display(&self, renderer: &mut Renderer) -> Result<Film, CaptureError> {
+        let output = &renderer.plan().resources[renderer.plan().output];
+        let (name, element, stride) = (output.name.clone(), output.ty.element.clone(), output.ty.stride as usize / size_of::<f32>());
+        if !matches!(element.as_str(), "vec3<f32>" | "vec4<f32>") {
+            return Err(CaptureError::NoPicture { name, element });
+        }
+        let words = renderer.read_f32(&name)?;
+        let color = words.chunks_exact(stride).map(|pixel| three(pixel, 0)).collect();
+        Ok(Film::new(renderer.options().size, color)?)
+    }
+}
+
+fn three(words: &[f32], at: usize) -> [f32; 3] {
+    [words[at], words[at + 1], words[at + 2]]
+}
+
+/// Nodes from the output upwards, the nearest first.
+fn upstream(graph: &Graph) -> Vec<usize> {
+    let mut found = vec![graph.output().node];
+    let mut next = VecDeque::from(found.clone());
+    while let Some(node) = next.pop_front() {
+        for wire in graph.nodes()[node].wires.iter().flatten() {
+            if !found.contains(&wire.from.node) {
+                found.push(wire.from.node);
+                next.push_back(wire.from.node);
+            }
+        }
+    }
+    found
+}
+
+/// The node's output of running means, as `node.port`.
+fn moments_of(graph: &Graph, node: usize) -> Option<String> {
+    let ports = &graph.nodes()[node].contract.ports;
+    let port = ports.iter().position(|port| port.ty.element == MOMENTS && port.direction != aquifer_graph::Direction::In)?;
+    Some(graph.port_name(PortId { node, port }))
+}
+
+/// Places of the members in units of 4 bytes.
+struct Members {
+    mean: usize,
+    count: usize,
+    squares: usize,
+    stride: usize,
+}
+
+impl Members {
+    fn of(plan: &Plan, name: &str) -> Result<Self, CaptureError> {
+        let kept = plan.kept.iter().find(|kept| kept.name == name).and_then(|kept| kept.resource);
+        let ty = kept.map(|half| &plan.resources[half.resource].ty);
+        let place = |member| {
+            let offset = ty.and_then(|ty| offset(&ty.layout, member));
+            offset.map(|bytes| bytes / size_of::<f32>()).ok_or_else(|| CaptureError::NoMember { name: name.to_owned(), member })
+        };
+        Ok(Self {
+            mean: place("mean")?,
+            count: place("count")?,
+            squares: place("squares")?,
+            stride: ty.map_or(1, |ty| ty.stride as usize / size_of::<f32>()),
+        })
+    }
+}
+
+/// Offset of a member, from a layout's canonical text: `Moments{mean@0:vec3<f32>,count@12:u32}/16`.
+fn offset(layout: &str, member: &str) -> Option<usize> {
+    let members = layout.split_once('{')?.1;
+    let start = members.split(',').find_map(|text| text.strip_prefix(member)?.strip_prefix('@'))?;
+    start.split(':').next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_are_found_by_name() {
+        let layout = "Moments{mean@0:vec3<f32>,count@12:u32,mean_rest@16:vec3<f32>,squares@32:vec3<f32>,squares_rest@48:vec3<f32>}/64";
+        assert_eq!(["mean", "count", "squares", "rest"].map(|name| offset(layout, name)), [Some(0), Some(12), Some(32), None]);
+        assert_eq!(offset("f32", "mean"), None);
+    }
+}

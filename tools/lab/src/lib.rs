@@ -1,0 +1,10 @@
+//! Measuring: image files, statistics, references. No command line, no window.
+//!
+//! [`film`] holds rendered images and their files, [`capture`] takes them off a renderer that [`stage`] made ready, [`stats`] decides what differences between them mean.
+//! Everything here is deterministic: the same images give the same verdicts.
+
+pub mod atomic;
+pub mod capture;
+pub mod film;
+pub mod stage;
+pub mod stats;

@@ -1,0 +1,68 @@
+//! Shaders and kinds of passes, made to measure for a scene.
+
+use aquifer_render::{Registry, SceneGlobals};
+use aquifer_scene::{Features, Scene};
+use aquifer_shader::{Library, ShaderError};
+use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
+
+/// The module of sizes that come from the scene.
+const LIMITS: &str = "scene/limits";
+
+/// Why the shaders cannot be made ready.
+#[derive(Debug, thiserror::Error)]
+pub enum StageError {
+    /// A folder of shaders cannot be read.
+    #[error(transparent)]
+    Shader(#[from] ShaderError),
+    /// The scene has no hierarchy to measure.
+    #[error(transparent)]
+    Render(#[from] aquifer_render::Error),
+}
+
+/// The built-in shaders with those of `folders` over them, and the built-in passes. With a finished scene they are cut to what it holds;
+/// without one (for checking and listing) they assume nothing of it.
+pub fn registry(scene: Option<&Scene>, folders: &[PathBuf]) -> Result<Registry, StageError> {
+    let mut library = Library::new();
+    for (path, text) in aquifer_shaders::modules() {
+        let origin = format!("built-in:{path}.wgsl");
+        library.insert(path, text, origin);
+    }
+    for folder in folders {
+        library.add_folder(folder)?;
+    }
+    let mut features = BTreeSet::new();
+    if let Some(scene) = scene {
+        let stack = SceneGlobals::stack_depth(scene)?;
+        library.insert(LIMITS, format!("const STACK: u32 = {stack}u;\n"), "the scene's limits");
+        features.extend(Features::of(scene).names().into_iter().map(str::to_owned));
+    }
+    // No built-in pass has host code of its own yet: each is a file of `shaders/pass`.
+    Ok(Registry::new(Arc::new(library), &[], features))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use aquifer_graph::Contracts as _;
+
+    #[test]
+    fn folders_add_passes_and_the_scene_sets_limits() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("pass")).unwrap();
+        let text = "@group(1) @binding(0) var<storage, read_write> out: array<f32>;\n@compute @workgroup_size(8, 8) fn main() { out[0] = 1.0; }\n";
+        std::fs::write(folder.path().join("pass/mine.wgsl"), text).unwrap();
+        let cornell = (aquifer_scenes::by_name("cornell").unwrap().make)().finish().unwrap();
+        let registry = registry(Some(&cornell), &[folder.path().to_owned()]).unwrap();
+        assert!(registry.kinds().contains(&"mine".to_owned()));
+        assert!(registry.kinds().contains(&"path_tracer".to_owned()));
+        let limits = registry.library().text(LIMITS).unwrap();
+        let depth: u32 = limits.trim_start_matches("const STACK: u32 = ").trim_end_matches("u;\n").parse().unwrap();
+        assert!((8..=64).contains(&depth), "{limits}");
+    }
+
+    #[test]
+    fn a_missing_folder_is_named() {
+        let error = registry(None, &[PathBuf::from("/no/such/folder")]).unwrap_err();
+        assert!(error.to_string().contains("/no/such/folder"), "{error}");
+    }
+}
