@@ -1,1 +1,38 @@
-//! The built-in passes, one file each.
+//! The built-in passes: shaders of the tree, and the explicit list of those that have host code of their own.
+//!
+//! [`library`] holds the WGSL tree; [`registry`] cuts it to what a scene holds.
+
+use aquifer_render::{Error, PassKind, Registry, SceneGlobals};
+use aquifer_scene::{Features, Scene};
+use aquifer_shader::Library;
+use std::{collections::BTreeSet, sync::Arc};
+
+/// Passes with host code, one file each. All others are files of `shaders/pass` and need no word here.
+pub const KINDS: &[PassKind] = &[];
+
+/// The module of sizes that come from the scene.
+pub const LIMITS: &str = "scene/limits";
+
+/// The built-in shaders.
+pub fn library() -> Library {
+    let mut library = Library::new();
+    for (path, text) in aquifer_shaders::modules() {
+        let origin = format!("built-in:{path}.wgsl");
+        library.insert(path, text, origin);
+    }
+    library
+}
+
+/// Every kind of pass. With a finished scene, shaders are cut to what it holds; without one (for checking and listing) they assume nothing of it.
+///
+/// # Errors
+/// [`Error::Globals`] for a scene that was not finished.
+pub fn registry(mut library: Library, scene: Option<&Scene>) -> Result<Registry, Error> {
+    let mut features = BTreeSet::new();
+    if let Some(scene) = scene {
+        let stack = SceneGlobals::stack_depth(scene)?;
+        library.insert(LIMITS, format!("const STACK: u32 = {stack}u;\n"), "the scene's limits");
+        features.extend(Features::of(scene).names().into_iter().map(str::to_owned));
+    }
+    Ok(Registry::new(Arc::new(library), KINDS, features))
+}

@@ -145,10 +145,8 @@ fn one_primitive_a_material_with_no_vertex_to_spare() {
     stage.add(shape);
     let file = written(&stage.into_scene());
     let mesh = file.meshes().next().expect("one mesh");
-    let parts: Vec<(Option<usize>, usize)> = mesh
-        .primitives()
-        .map(|part| (part.material().index(), part.get(&gltf::Semantic::Positions).expect("positions").count()))
-        .collect();
+    let parts: Vec<(Option<usize>, usize)> =
+        mesh.primitives().map(|part| (part.material().index(), part.get(&gltf::Semantic::Positions).expect("positions").count())).collect();
     assert_eq!(parts, [(Some(0), 8), (Some(1), 4)]);
     let blue = file.materials().nth(1).expect("two materials");
     assert_eq!((blue.alpha_mode(), blue.alpha_cutoff(), blue.double_sided()), (gltf::material::AlphaMode::Mask, Some(0.25), true));

@@ -1,6 +1,6 @@
 //! What is written and loaded again is the same scene.
 
-use aquifer_scene::{Environment, Material, Moment, Scene, TextureRef};
+use aquifer_scene::{Environment, Material, Mesh, Moment, Scene, TextureRef};
 use aquifer_scenes::{Exported, all, by_name, export};
 use glam::Vec3;
 
@@ -17,16 +17,11 @@ fn at(scene: &Scene, time: f32) -> Moment {
     scene.at(time, Some("main")).unwrap_or_else(|error| panic!("{}: {error}", scene.name))
 }
 
-/// World corners of every triangle with its material, to the bit and in an order of their own.
-fn triangles(scene: &Scene, moment: &Moment) -> Vec<([[u32; 3]; 3], u32)> {
-    let mut found = Vec::new();
-    for instance in &moment.instances {
-        let mesh = &scene.meshes[instance.mesh as usize];
-        for (triangle, material) in mesh.triangles.iter().zip(&mesh.materials) {
-            let corner = |i: u32| instance.transform.transform_point3(mesh.positions[i as usize]).to_array().map(f32::to_bits);
-            found.push((triangle.map(corner), *material));
-        }
-    }
+/// Corners of every triangle of a mesh with its material, to the bit and in an order of their own: the file sorts them by material, the
+/// hierarchy by place.
+fn triangles(mesh: &Mesh) -> Vec<([[u32; 3]; 3], u32)> {
+    let corner = |i: u32| mesh.positions[i as usize].to_array().map(f32::to_bits);
+    let mut found: Vec<_> = mesh.triangles.iter().map(|triangle| triangle.map(corner)).zip(mesh.materials.iter().copied()).collect();
     found.sort_unstable();
     found
 }
@@ -52,22 +47,37 @@ fn assert_same_material(a: &Material, b: &Material, scenes: [&Scene; 2]) {
     assert_eq!((a.alpha, a.double_sided, a.unlit), (b.alpha, b.double_sided, b.unlit), "{what}");
     assert_eq!(a.normal_scale, b.normal_scale, "{what}");
     assert!(same_to_rounding(a.emission, b.emission), "{what}: {} became {}", a.emission, b.emission);
-    let uses = |m: &Material| {
-        [&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture, &m.normal_texture].map(Option::clone)
-    };
+    let uses =
+        |m: &Material| [&m.base_color_texture, &m.metallic_roughness_texture, &m.emission_texture, &m.normal_texture].map(Option::clone);
     for (a, b) in uses(a).iter().zip(&uses(b)) {
         assert!(same_texture(a.as_ref(), b.as_ref(), scenes), "{what}: {a:?} became {b:?}");
     }
 }
 
 #[test]
-fn triangles_come_back_to_the_bit() {
+fn meshes_come_back_to_the_bit() {
     for generator in all() {
         let (scene, loaded, _) = both(generator.make);
         assert_eq!(loaded.warnings, Vec::<String>::new(), "{}", generator.name);
-        let (first, second) = (triangles(&scene, &at(&scene, 0.0)), triangles(&loaded, &at(&loaded, 0.0)));
+        assert_eq!(scene.meshes.len(), loaded.meshes.len(), "{}", generator.name);
+        for (a, b) in scene.meshes.iter().zip(&loaded.meshes) {
+            assert!(triangles(a) == triangles(b), "mesh '{}' of {}", a.name, generator.name);
+        }
+    }
+}
+
+#[test]
+fn every_instance_stands_where_it_stood() {
+    for generator in all() {
+        let (scene, loaded, _) = both(generator.make);
+        let (first, second) = (at(&scene, 0.0).instances, at(&loaded, 0.0).instances);
         assert_eq!(first.len(), second.len(), "{}", generator.name);
-        assert!(first == second, "{}", generator.name);
+        for (a, b) in first.iter().zip(&second) {
+            assert_eq!((a.mesh, a.node), (b.mesh, b.node), "{}", generator.name);
+            // Rotations are made unit once more on the way.
+            let tolerance = 4.0 * f32::EPSILON * (1.0 + a.transform.to_cols_array().into_iter().fold(0.0, |m: f32, x| m.max(x.abs())));
+            assert!(a.transform.abs_diff_eq(b.transform, tolerance), "node {} of {}", a.node, generator.name);
+        }
     }
 }
 

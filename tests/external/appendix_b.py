@@ -217,8 +217,25 @@ class AppendixB(mi.BSDF):
     def eval_diffuse_reflectance(self, si, active=True):
         return self.base_color.eval(si, active)
 
+    def eval_attribute_3(self, name, si, active=True):
+        """`unlit`: what the surface shows to the camera without light."""
+        return mi.Color3f(0.0)
+
     def to_string(self):
         return 'AppendixB[]'
+
+
+class Unlit(AppendixB):
+    """Plugin `gltf_unlit`, KHR_materials_unlit: shows its base colour to the camera; to light it is a black body."""
+
+    def _value(self, base, metallic, alpha, v, l):
+        return mi.Color3f(0.0)
+
+    def eval_attribute_3(self, name, si, active=True):
+        return self._parameters(si, active)[0]
+
+    def to_string(self):
+        return 'Unlit[]'
 
 
 def dielectric_f0_f90(props):
@@ -232,5 +249,6 @@ def dielectric_f0_f90(props):
 
 
 def register():
-    """Makes `gltf_pbr` known to Mitsuba; call once."""
+    """Makes the plugins known to Mitsuba; call once."""
     mi.register_bsdf('gltf_pbr', AppendixB)
+    mi.register_bsdf('gltf_unlit', Unlit)

@@ -120,7 +120,7 @@ def albedo_sampled(bsdf, cos_theta, count=1_000_000):
     return weight.mean(axis=1), weight.std(axis=1) / np.sqrt(count)
 
 
-def albedo_quadrature(roughness, metallic, cos_theta, base, ior=1.5, specular=1.0, specular_color=(1.0, 1.0, 1.0)):
+def albedo_quadrature(roughness, metallic, cos_theta, base, ior=1.5, specular=1.0, specular_color=(1, 1, 1)):
     """The same by midpoint rule over the half vector for the specular part and over l for the diffuse part."""
     a2 = max(roughness**2, 1e-3)**2
     v = np.array([np.sqrt(1 - cos_theta**2), 0.0, cos_theta])
@@ -137,7 +137,7 @@ def albedo_quadrature(roughness, metallic, cos_theta, base, ior=1.5, specular=1.
     def fresnel(low, high, vh):
         return low[:, None, None] + (high - low)[:, None, None] * (1 - np.abs(vh))**5
 
-    # Half vectors spaced so that each cell holds the same share of D·cos: dω_h = π a² / … (exact inverse of the CDF).
+    # Half vectors by the inverse of the distribution D·cos: each cell holds the same share of it.
     cos_h = np.sqrt((1 - mid) / (1 + (a2 - 1) * mid))[:, None]
     h = spread(cos_h)
     vh = np.einsum('i,ijk->jk', v, h)
@@ -145,8 +145,11 @@ def albedo_quadrature(roughness, metallic, cos_theta, base, ior=1.5, specular=1.
     nl = l[2]
     ok = (nl > 0) & (vh > 0)
     nl = np.where(ok, nl, 1.0)
-    lam = lambda c: np.sqrt(a2 + (1 - a2) * c**2)
-    g2 = 2 * nl * cos_theta / (nl * lam(cos_theta) + cos_theta * lam(nl))
+
+    def root(cos):
+        return np.sqrt(a2 + (1 - a2) * cos**2)
+
+    g2 = 2 * nl * cos_theta / (nl * root(cos_theta) + cos_theta * root(nl))
     # ∫ F D G2 / (4 nl nv) nl dω_l with dω_l = 4 vh dω_h and D dω_h = (cell share) / cos_h.
     part = np.where(ok, g2 * vh / (cos_theta * cos_h), 0.0)
     dielectric = (fresnel(f0, f90 * np.ones(3), vh) * part).mean(axis=(1, 2))

@@ -7,106 +7,21 @@ a z-test over pixels: at most 0.5 % of them may lie beyond 3.3 standard errors (
 image within 4. The rest has closed forms.
 """
 
-import io
-import json
 import math
 import pathlib
-import struct
 import sys
 import tempfile
 
 import numpy as np
-import PIL.Image
 
 import check_bsdf
 import gltf_scene
 import render as tool
+from glb_writer import GlbWriter
+from gltf_materials import srgb_to_linear
 from variant import mi
 
 SIZE = (48, 27)
-
-
-class GlbWriter:
-    """Just enough to write a test scene."""
-
-    def __init__(self):
-        self.json = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': []}], 'nodes': [], 'meshes': [],
-                     'materials': [], 'accessors': [], 'bufferViews': []}
-        self.binary = b''
-
-    def view(self, data):
-        self.binary += b'\0' * (-len(self.binary) % 4)
-        self.json['bufferViews'].append({'buffer': 0, 'byteOffset': len(self.binary), 'byteLength': len(data)})
-        self.binary += data
-        return len(self.json['bufferViews']) - 1
-
-    def accessor(self, array, kind):
-        component = 5125 if kind == 'SCALAR' else 5126
-        array = np.asarray(array, np.uint32 if kind == 'SCALAR' else np.float32)
-        entry = {'bufferView': self.view(array.tobytes()), 'componentType': component, 'count': len(array), 'type': kind}
-        self.json['accessors'].append(entry)
-        return len(self.json['accessors']) - 1
-
-    def material(self, base=(0.7, 0.7, 0.7, 1), roughness=1.0, metallic=0.0, emission=None, **more):
-        entry = {'pbrMetallicRoughness': {'baseColorFactor': list(base), 'roughnessFactor': roughness,
-                                          'metallicFactor': metallic}, **more}
-        if emission:
-            entry['emissiveFactor'] = [1, 1, 1]
-            entry['extensions'] = {'KHR_materials_emissive_strength': {'emissiveStrength': emission}}
-        self.json['materials'].append(entry)
-        return len(self.json['materials']) - 1
-
-    def mesh(self, material, positions, indices, normals=None, uvs=None, tangents=None, colors=None, **node):
-        attributes = {'POSITION': self.accessor(positions, 'VEC3')}
-        if normals is not None:
-            attributes['NORMAL'] = self.accessor(normals, 'VEC3')
-        if uvs is not None:
-            attributes['TEXCOORD_0'] = self.accessor(uvs, 'VEC2')
-        if tangents is not None:
-            attributes['TANGENT'] = self.accessor(tangents, 'VEC4')
-        if colors is not None:
-            attributes['COLOR_0'] = self.accessor(colors, 'VEC3')
-        primitive = {'attributes': attributes, 'indices': self.accessor(np.ravel(indices), 'SCALAR'),
-                     'material': material}
-        self.json['meshes'].append({'primitives': [primitive]})
-        self.node(mesh=len(self.json['meshes']) - 1, **node)
-
-    def quad(self, material, corner, u, v, **node):
-        """Front towards u × v."""
-        corner, u, v = (np.array(x, float) for x in (corner, u, v))
-        self.mesh(material, [corner, corner + u, corner + u + v, corner + v], [0, 1, 2, 0, 2, 3],
-                  uvs=[[0, 1], [1, 1], [1, 0], [0, 0]], **node)
-
-    def sphere(self, material, centre, radius, steps=48):
-        theta, phi = np.meshgrid(np.linspace(0, math.pi, steps + 1), np.linspace(0, 2 * math.pi, 2 * steps + 1))
-        normals = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta), np.sin(theta) * np.sin(phi)], -1).reshape(-1, 3)
-        at = lambda i, j: i * (steps + 1) + j
-        indices = [t for i in range(2 * steps) for j in range(steps)
-                   for t in ((at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1)))]
-        self.mesh(material, normals * radius + np.array(centre), indices, normals)
-
-    def node(self, **entry):
-        self.json['nodes'].append(entry)
-        self.json['scenes'][0]['nodes'].append(len(self.json['nodes']) - 1)
-
-    def camera(self, position, fov_degrees):
-        """Looks down −Z."""
-        self.json['cameras'] = [{'type': 'perspective', 'perspective': {'yfov': math.radians(fov_degrees), 'znear': 0.1}}]
-        self.node(camera=0, translation=list(position))
-
-    def light(self, entry, **node):
-        lights = self.json.setdefault('extensions', {}).setdefault('KHR_lights_punctual', {'lights': []})['lights']
-        lights.append(entry)
-        self.node(extensions={'KHR_lights_punctual': {'light': len(lights) - 1}}, **node)
-
-    def write(self, path):
-        self.json['buffers'] = [{'byteLength': len(self.binary)}]
-        document = json.dumps(self.json).encode()
-        document += b' ' * (-len(document) % 4)
-        binary = self.binary + b'\0' * (-len(self.binary) % 4)
-        data = struct.pack('<II', len(document), 0x4E4F534A) + document + struct.pack('<II', len(binary), 0x004E4942) + binary
-        pathlib.Path(path).write_bytes(struct.pack('<4sII', b'glTF', 2, 12 + len(data)) + data)
-        return path
 
 
 def room(light=True):
@@ -158,8 +73,8 @@ class Checks:
 
 
 def own(loaded, transport, spp=2048, seed=0):
-    scene, see_through = loaded
-    return tool.render(scene, tool.integrator(transport, see_through), spp, 32, seed)
+    scene, facts = loaded
+    return tool.render(scene, tool.integrator(transport, facts), spp, 32, seed)
 
 
 def mitsuba_path(loaded, depth, spp=2048, seed=5000):
@@ -178,7 +93,8 @@ def windows(checks):
                     mitsuba_path(loaded, bounces + 2))
     parts = add(own(loaded, 'emission'), own(loaded, 'direct', seed=100), own(loaded, 'indirect:2', seed=200))
     checks.same('emission + direct + indirect:2 = full:2', parts, own(loaded, 'full:2', seed=300))
-    checks.differs('a missing bounce is seen: full:1 against max_depth 4', own(loaded, 'full:1'), mitsuba_path(loaded, 4))
+    checks.differs('a missing bounce is seen: full:1 against max_depth 4', own(loaded, 'full:1'),
+                   mitsuba_path(loaded, 4))
 
 
 def emitters(checks):
@@ -190,14 +106,16 @@ def emitters(checks):
     shine = glb.material((0.5, 0.5, 0.5, 1), emission=8.0)
     glb.quad(shine, (-0.5, 2.9, -0.5), (1, 0, 0), (0, 0, 1))
     glb.quad(shine, (-0.5, 2.9 + 1e-4, -0.5), (0, 0, 1), (1, 0, 0))
-    checks.same('double-sided light = two lights back to back', own(double, 'full:2'), own(checks.load(glb), 'full:2', seed=50))
+    checks.same('double-sided light = two lights back to back', own(double, 'full:2'),
+                own(checks.load(glb), 'full:2', seed=50))
     checks.same('double-sided light, by Mitsuba\'s path', own(double, 'full:2'), mitsuba_path(double, 4))
     for double_sided, radiance in ((False, 0.0), (True, 8.0)):
         glb = GlbWriter()
         glb.quad(glb.material(emission=8.0, doubleSided=double_sided), (-5, -5, 0), (0, 10, 0), (10, 0, 0))
         glb.camera((0, 0, 1), 45)
         image = own(checks.load(glb), 'emission', spp=64)[0]
-        checks.verdict(f'the back of a light shines {radiance}', np.abs(image - radiance).max() < 1e-5, f'{image.mean()}')
+        checks.verdict(f'the back of a light shines {radiance}', np.abs(image - radiance).max() < 1e-5,
+                       f'{image.mean()}')
 
 
 def punctual(checks):
@@ -260,7 +178,7 @@ def holes(checks):
     def masked(glb):
         image = np.full((8, 8, 4), 255, np.uint8)
         image[:, 4:, 3] = 0
-        add_texture(glb, image)
+        glb.texture(image)
         screen = glb.material(alphaMode='MASK')
         glb.json['materials'][screen]['pbrMetallicRoughness'] |= {'baseColorTexture': {'index': 0}}
         glb.json['materials'][screen]['pbrMetallicRoughness']['baseColorFactor'] = [0.5, 0.5, 0.5, 1]
@@ -285,28 +203,19 @@ def holes(checks):
     checks.verdict('full:0 holds the emission', image[0].sum() > through[0].sum(), f'{image[0].mean():.4f}')
 
 
-def add_texture(glb, rgba):
-    stream = io.BytesIO()
-    PIL.Image.fromarray(rgba).save(stream, 'PNG')
-    glb.json.setdefault('images', []).append({'bufferView': glb.view(stream.getvalue()), 'mimeType': 'image/png'})
-    glb.json.setdefault('samplers', [{'magFilter': 9728, 'wrapS': 10497, 'wrapT': 10497}])
-    glb.json.setdefault('textures', []).append({'source': len(glb.json['images']) - 1, 'sampler': 0})
-    return len(glb.json['textures']) - 1
-
-
 def textures(checks):
     """An emissive picture fills the film exactly: which way is up, sRGB, factors."""
     rgba = np.zeros((27, 48, 4), np.uint8)
     rgba[..., 3] = 255
     rgba[:9, :, 0], rgba[:, :16, 1], rgba[-3:, -3:, 2] = 200, 120, 255
     glb = GlbWriter()
-    add_texture(glb, rgba)
+    glb.texture(rgba)
     shine = glb.material((0, 0, 0, 1), emission=3.0, emissiveTexture={'index': 0})
     half = math.tan(math.radians(22.5))
     glb.quad(shine, (-half * 48 / 27, -half, 0), (2 * half * 48 / 27, 0, 0), (0, 2 * half, 0))
     glb.camera((0, 0, 1), 45)
     image = own(checks.load(glb), 'emission', spp=64)[0]
-    worst = np.max(np.abs(image - 3 * gltf_scene.srgb_to_linear(rgba[..., :3] / 255)))
+    worst = np.max(np.abs(image - 3 * srgb_to_linear(rgba[..., :3] / 255)))
     checks.verdict('emissive picture', worst < 1e-3, f'largest difference {worst:.1e}')
 
 
@@ -316,14 +225,14 @@ def texture_transform(checks):
     rgba[..., 3] = 255
     transform = {'offset': [0, 1], 'rotation': math.pi / 2, 'scale': [0.5, 0.5]}
     glb = GlbWriter()
-    add_texture(glb, rgba)
+    glb.texture(rgba)
     shine = glb.material((0, 0, 0, 1), emission=1.0, emissiveTexture={
         'index': 0, 'extensions': {'KHR_texture_transform': transform}})
     half = math.tan(math.radians(22.5))
     glb.quad(shine, (-half, -half, 0), (2 * half, 0, 0), (0, 2 * half, 0))
     glb.camera((0, 0, 1), 45)
     image = own(checks.load(glb, size=(4, 4)), 'emission', spp=64)[0]
-    expected = gltf_scene.srgb_to_linear(np.rot90(rgba[4:, :4, :3], -1) / 255)
+    expected = srgb_to_linear(np.rot90(rgba[4:, :4, :3], -1) / 255)
     worst = np.max(np.abs(image - expected))
     checks.verdict('texture transform', worst < 1e-3, f'largest difference {worst:.1e}')
 
@@ -345,7 +254,7 @@ def vertex_attributes(checks):
 
     def bumpy(**more):
         def build(glb, material, corners, indices, uvs):
-            add_texture(glb, np.tile(np.append(texel, 255).astype(np.uint8), (4, 4, 1)))
+            glb.texture(np.tile(np.append(texel, 255).astype(np.uint8), (4, 4, 1)))
             glb.json['materials'][material]['normalTexture'] = {'index': 0}
             glb.mesh(material, corners, indices, np.tile([0, 0, 1], (4, 1)), uvs, **more)
         return build
@@ -378,6 +287,23 @@ def mirrored(checks):
         glb.camera((0, 0, 1), 45)
         image = own(checks.load(glb), 'emission', spp=64)[0]
         checks.verdict(f'scale {scale} shines {radiance}', np.abs(image - radiance).max() < 1e-5, f'{image.mean()}')
+
+
+def unlit(checks):
+    """An unlit card shows its base colour under any light, and is a black body to the rest of the room."""
+    def scene(material):
+        glb = room()
+        glb.quad(glb.material(*material[0], **material[1]), (-1.5, 0.5, 0.8), (1, 0, 0), (0, 1, 0))
+        return checks.load(glb)
+
+    card = scene((((0.2, 0.4, 0.6, 1),), {'extensions': {'KHR_materials_unlit': {}}}))
+    nothing = {'KHR_materials_specular': {'specularFactor': 0.0}}
+    black = scene((((0, 0, 0, 1),), {'extensions': nothing}))
+    checks.same('an unlit card lights nothing', own(card, 'direct'), own(black, 'direct', seed=50))
+    mask = own(black, 'emission', spp=64)[0].sum(axis=2) == 0
+    shown = own(card, 'emission', spp=64)[0]
+    exact = np.isclose(shown, [0.2, 0.4, 0.6], atol=1e-6).all(axis=2) & mask
+    checks.verdict('an unlit card shows its base colour', exact.sum() > 40, f'in {exact.sum()} pixels')
 
 
 def environment(checks):
@@ -418,7 +344,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         checks = Checks(folder)
         for check in (windows, emitters, punctual, holes, textures, texture_transform, vertex_attributes,
-                  mirrored, environment):
+                  mirrored, unlit, environment):
             check(checks)
     print(f'{checks.failures} failed' if checks.failures else 'all passed')
     return 1 if checks.failures else 0

@@ -10,30 +10,27 @@ Conventions
 - Opacity: MASK is thresholded after filtering, BLEND is coverage.
 - An environment map is a file beside the glTF (`environment=`): equirectangular, u = 0.5 + atan2(x, −z) / 2π,
   v = acos(y) / π, bilinear between texel centres.
-Not converted, with an error: KHR_materials_unlit, two UV sets in one material, different wrapping in u and v, opacity
+Not converted, with an error: two UV sets in one material, different wrapping in u and v, opacity
 of vertex colours, textures of KHR_materials_specular, other extensionsRequired. Skins, morph targets and animation are
 left in the rest pose, with a warning.
 """
 
-import io
 import math
 import sys
 
 import numpy as np
-import PIL.Image
 
 from blocks import LUMINANCE
 from gltf_file import GltfFile, Unsupported
+from gltf_materials import Materials
 from variant import mi
 
 KNOWN_EXTENSIONS = {'KHR_lights_punctual', 'KHR_materials_emissive_strength', 'KHR_materials_ior',
-                    'KHR_materials_specular', 'KHR_texture_transform'}
-WRAP = {10497: 'repeat', 33071: 'clamp', 33648: 'mirror'}
-NEAREST = {9728, 9984, 9986}
+                    'KHR_materials_specular', 'KHR_materials_unlit', 'KHR_texture_transform'}
 
 
 def load(path, size, camera=None, environment=None):
-    """Returns (Mitsuba scene, whether any surface has opacity)."""
+    """Returns (Mitsuba scene, what the integrator has to know of it)."""
     file = GltfFile(path)
     check_extensions(file)
     nodes = list(file.nodes())
@@ -50,14 +47,15 @@ def load(path, size, camera=None, environment=None):
     if environment:
         lights['environment'] = environment_light(environment)
     share_samples(lights, radius)
-    see_through = False
+    facts = {'see_through': False, 'unlit': False}
     for index, surface in surfaces.items():
-        see_through |= materials.opacity(index) is not None
+        facts['see_through'] |= materials.opacity(index) is not None
+        facts['unlit'] |= materials.unlit(index)
         light = lights.pop(f'surface light of material {index}', None)
         scene[f'surface_{index}'] = mesh(index, surface, materials.bsdf(index, surface), light)
     for number, light in enumerate(lights.values()):
         scene[f'light_{number}'] = light
-    return mi.load_dict(scene), see_through
+    return mi.load_dict(scene), facts
 
 
 def check_extensions(file):
@@ -180,140 +178,6 @@ def mesh(name, surface, bsdf, light):
     return shape
 
 
-# Materials
-
-class Materials:
-    """Turns materials into `gltf_pbr` and `gltf_surface` plugins."""
-
-    def __init__(self, file):
-        self.file = file
-        self.pixels = {}
-
-    def material(self, index):
-        return {} if index is None else self.file.get('materials', index)
-
-    def bsdf(self, index, surface):
-        material = self.material(index)
-        if 'KHR_materials_unlit' in material.get('extensions', {}):
-            raise Unsupported(f'/materials/{index}: KHR_materials_unlit')
-        self.choose_uvs(index, surface)
-        pbr = material.get('pbrMetallicRoughness', {})
-        base = np.array(pbr.get('baseColorFactor', [1, 1, 1, 1]), np.float64)
-        plugin = {'type': 'gltf_pbr', 'vertex_color': 'COLOR_0' in surface}
-        plugin['base_color'] = self.texture(pbr.get('baseColorTexture'), lambda t: srgb_to_linear(t[..., :3]) * base[:3]) \
-            or {'type': 'rgb', 'value': base[:3].tolist()}
-        packed = pbr.get('metallicRoughnessTexture')
-        for name, key, channel in (('roughness', 'roughnessFactor', 1), ('metallic', 'metallicFactor', 2)):
-            factor = pbr.get(key, 1.0)
-            plugin[name] = self.texture(packed, lambda t: t[..., channel:channel + 1] * factor) or float(factor)
-        if 'normalTexture' in material:
-            plugin['normal_map'] = self.texture(material['normalTexture'], lambda t: t[..., :3])
-            plugin['vertex_tangent'] = 'TANGENT' in surface
-            plugin['normal_scale'] = float(material['normalTexture'].get('scale', 1.0))
-        opacity = self.opacity(index)
-        if opacity is not None:
-            plugin['opacity'], plugin['cutoff'] = opacity
-        extensions = material.get('extensions', {})
-        plugin['ior'] = float(extensions.get('KHR_materials_ior', {}).get('ior', 1.5))
-        specular = extensions.get('KHR_materials_specular', {})
-        if 'specularTexture' in specular or 'specularColorTexture' in specular:
-            raise Unsupported(f'/materials/{index}/extensions/KHR_materials_specular: textures')
-        plugin['specular'] = float(specular.get('specularFactor', 1.0))
-        plugin['specular_color'] = mi.ScalarColor3f(specular.get('specularColorFactor', [1.0, 1.0, 1.0]))
-        return plugin
-
-    def opacity(self, index):
-        """(texture or number, cutoff); None where the surface is whole. Cutoff −1 stands for BLEND."""
-        material = self.material(index)
-        mode = material.get('alphaMode', 'OPAQUE')
-        if mode == 'OPAQUE':
-            return None
-        pbr = material.get('pbrMetallicRoughness', {})
-        factor = pbr.get('baseColorFactor', [1, 1, 1, 1])[3]
-        value = self.texture(pbr.get('baseColorTexture'), lambda t: t[..., 3:4] * factor) or float(factor)
-        return value, float(material.get('alphaCutoff', 0.5)) if mode == 'MASK' else -1.0
-
-    def light(self, index, surface):
-        """The emitter of a material, or None."""
-        material = self.material(index)
-        strength = material.get('extensions', {}).get('KHR_materials_emissive_strength', {}).get('emissiveStrength', 1.0)
-        radiance = np.array(material.get('emissiveFactor', [0, 0, 0]), np.float64) * strength
-        if not radiance.any():
-            return None
-        self.choose_uvs(index, surface)
-        a, b, c = surface['positions'].reshape(-1, 3, 3).transpose(1, 0, 2)
-        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
-        double_sided = material.get('doubleSided', False)
-        texture = self.texture(material.get('emissiveTexture'), lambda t: srgb_to_linear(t[..., :3]) * radiance)
-        power = math.pi * area * (LUMINANCE @ radiance) * (2 if double_sided else 1)
-        if texture is None and not double_sided:
-            return {'type': 'area', 'radiance': {'type': 'rgb', 'value': radiance.tolist()}, 'power': power}
-        return {'type': 'gltf_surface', 'double_sided': double_sided, 'power': power,
-                'radiance': texture or {'type': 'rgb', 'value': radiance.tolist()}}
-
-    def references(self, index):
-        """All uses of textures in a material."""
-        material = self.material(index)
-        pbr = material.get('pbrMetallicRoughness', {})
-        uses = [pbr.get('baseColorTexture'), pbr.get('metallicRoughnessTexture'), material.get('normalTexture'),
-                material.get('emissiveTexture')]
-        return [use for use in uses if use]
-
-    def choose_uvs(self, index, surface):
-        """Mitsuba's meshes hold one set of coordinates."""
-        sets = {self.transform(use)[0] for use in self.references(index)}
-        if len(sets) > 1:
-            raise Unsupported(f'/materials/{index}: two sets of texture coordinates')
-        if sets:
-            name = f'TEXCOORD_{sets.pop()}'
-            surface['uvs'] = surface.get(name, np.zeros((len(surface['positions']), 2)))
-
-    def transform(self, use):
-        """(uv set, matrix) of one use: KHR_texture_transform, translation · rotation · scale.
-
-        The extension turns counter-clockwise as seen on the image, whose v grows downwards."""
-        extension = use.get('extensions', {}).get('KHR_texture_transform', {})
-        angle = extension.get('rotation', 0.0)
-        c, s = math.cos(angle), math.sin(angle)
-        matrix = np.eye(3)
-        matrix[:2, :2] = np.array([[c, s], [-s, c]]) * np.array(extension.get('scale', [1.0, 1.0]))
-        matrix[:2, 2] = extension.get('offset', [0.0, 0.0])
-        return extension.get('texCoord', use.get('texCoord', 0)), matrix
-
-    def texture(self, use, channels):
-        """A bitmap plugin of linear floats, or None; `channels` maps stored RGBA in [0, 1] to what is wanted."""
-        if use is None:
-            return None
-        texture = self.file.get('textures', use['index'])
-        sampler = self.file.get('samplers', texture['sampler']) if 'sampler' in texture else {}
-        wrap = {WRAP[sampler.get(key, 10497)] for key in ('wrapS', 'wrapT')}
-        if len(wrap) > 1:
-            raise Unsupported('a sampler that wraps differently in u and v')
-        pixels = np.ascontiguousarray(channels(self.image(texture['source'])).astype(np.float32))
-        return {'type': 'bitmap', 'data': mi.TensorXf(pixels), 'raw': True, 'wrap_mode': wrap.pop(),
-                'filter_type': 'nearest' if sampler.get('magFilter', 9729) in NEAREST else 'bilinear',
-                'to_uv': mi.ScalarTransform3f(self.transform(use)[1])}
-
-    def image(self, index):
-        if index not in self.pixels:
-            self.pixels[index] = decode_image(self.file.image_bytes(index))
-        return self.pixels[index]
-
-
-def decode_image(data):
-    """PNG or JPEG to RGBA in [0, 1], as stored."""
-    image = PIL.Image.open(io.BytesIO(data))
-    if image.mode in ('I;16', 'I'):
-        grey = np.asarray(image, np.float64)[..., None] / 65535
-        return np.concatenate([grey, grey, grey, np.ones_like(grey)], axis=2)
-    return np.asarray(image.convert('RGBA'), np.float64) / 255
-
-
-def srgb_to_linear(encoded):
-    """IEC 61966-2-1."""
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055)**2.4)
-
-
 # Lights and camera
 
 def punctual_lights(file, nodes):
@@ -336,9 +200,9 @@ def punctual_light(light, intensity, position, direction):
     if light['type'] == 'directional':
         return {'type': 'directional', 'direction': direction.tolist(), 'irradiance': luminance,
                 'spectrum': intensity.tolist()}
-    plugin = {'type': 'gltf_punctual', 'position': mi.ScalarPoint3f(position), 'direction': mi.ScalarVector3f(direction),
-              'intensity': mi.ScalarColor3f(intensity), 'range': float(light.get('range', 0.0)),
-              'power': 4 * math.pi * luminance}
+    plugin = {'type': 'gltf_punctual', 'position': mi.ScalarPoint3f(position),
+              'direction': mi.ScalarVector3f(direction), 'intensity': mi.ScalarColor3f(intensity),
+              'range': float(light.get('range', 0.0)), 'power': 4 * math.pi * luminance}
     if light['type'] == 'spot':
         spot = light.get('spot', {})
         outer = spot.get('outerConeAngle', math.pi / 4)
@@ -349,8 +213,9 @@ def punctual_light(light, intensity, position, direction):
 
 
 def environment_light(path):
-    """Mitsuba's map has its first texel centre at u = 0 and looks the other way round: resample finer onto that grid."""
-    image = np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False), np.float64)
+    """Mitsuba's map has its first texel centre at u = 0 and looks the other way round: resampled, finer, onto that."""
+    image = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False)
+    image = np.array(image, np.float64)
     height, width = image.shape[:2]
     factor = max(1, min(4, 4096 // width))
     u = (np.arange(width * factor) / (width * factor) + 0.5) % 1.0 * width - 0.5
@@ -381,7 +246,7 @@ def share_samples(lights, radius):
 def sensor(file, nodes, size, name):
     """The camera of that name (the node's or the camera's own), else the first one."""
     choices = []
-    for index, node, world in nodes:
+    for _, node, world in nodes:
         if 'camera' in node:
             camera = file.get('cameras', node['camera'])
             choices.append(({node.get('name'), camera.get('name')}, camera, world))

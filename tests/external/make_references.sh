@@ -3,7 +3,8 @@
 #
 #     ./make_references.sh FOLDER [SCENE …]
 #
-# FOLDER holds SCENE.glb and, where the scene has one, its environment SCENE.exr (`aquifer scenes` writes both).
+# FOLDER holds SCENE.glb and, where the scene has one, its environment SCENE.exr, as
+# `aquifer scenes export SCENE FOLDER/SCENE.glb` writes them.
 # A reference that shows the same .glb is left alone. PYTHON names the interpreter.
 set -eu
 folder=$(cd "$1" && pwd)

@@ -22,6 +22,7 @@ import blocks
 import gltf_lights
 import gltf_scene
 import window_path
+from gltf_file import Unsupported
 from variant import mi
 
 # Batches rendered before the error is looked at: enough for a steady estimate of it.
@@ -34,9 +35,9 @@ def register():
     window_path.register()
 
 
-def integrator(transport, see_through):
+def integrator(transport, facts):
     fewest, most = window_path.window(transport)
-    return mi.load_dict({'type': 'window_path', 'fewest': fewest, 'most': most, 'see_through': see_through})
+    return mi.load_dict({'type': 'window_path', 'fewest': fewest, 'most': most, **facts})
 
 
 class Accumulator:
@@ -66,7 +67,7 @@ def render(scene, how, spp, batches, seed, accumulator=None):
 def block_errors(mean, error):
     """Relative standard errors of the luminance of the lit blocks."""
     value, spread, lit = blocks.statistics(*blocks.luminance(mean, error))
-    return spread[lit] / value[lit]
+    return spread[lit] / value[lit] if lit.any() else np.zeros(1)
 
 
 def write(path, mean, error, facts):
@@ -100,15 +101,24 @@ def arguments():
     parser.add_argument('--camera', help='name of a camera; the first one by default')
     parser.add_argument('--environment', type=pathlib.Path, help='equirectangular .exr')
     parser.add_argument('-o', '--output', type=pathlib.Path, required=True)
-    parser.add_argument('--keep', action='store_true', help='leave the output alone where it shows this scene and transport')
-    return parser.parse_args()
+    parser.add_argument('--keep', action='store_true',
+                        help='leave the output alone where it shows this scene and transport')
+    given = parser.parse_args()
+    if given.batches < ROUND or given.batches % ROUND or given.spp < given.batches:
+        parser.error(f'--batches must be a multiple of {ROUND} and at most --spp')
+    try:
+        window_path.window(given.transport)
+    except ValueError as error:
+        parser.error(str(error))
+    return given
 
 
 def wanted(given):
     """The facts that are known before rendering."""
     facts = {'renderer': f'Mitsuba {mi.__version__}, {mi.variant()}', 'scene': given.scene.name,
-             'scene sha256': hashlib.sha256(given.scene.read_bytes()).hexdigest(), 'camera': given.camera or 'the first',
-             'transport': given.transport, 'size': list(given.size), 'first seed': given.seed}
+             'scene sha256': hashlib.sha256(given.scene.read_bytes()).hexdigest(),
+             'camera': given.camera or 'the first', 'transport': given.transport, 'size': list(given.size),
+             'first seed': given.seed}
     if given.environment:
         facts['environment'] = given.environment.name
         facts['environment sha256'] = hashlib.sha256(given.environment.read_bytes()).hexdigest()
@@ -117,15 +127,17 @@ def wanted(given):
 
 def text(facts):
     """As attributes of an EXR."""
-    return {f'reference:{name}': value if isinstance(value, str) else json.dumps(value) for name, value in facts.items()}
+    return {f'reference:{name}': value if isinstance(value, str) else json.dumps(value)
+            for name, value in facts.items()}
 
 
 def is_there(path, facts):
     if not path.exists():
         return False
     with OpenEXR.File(str(path)) as file:
+        # The header is gone once the file is closed.
         header = file.header()
-    return all(header.get(name) == value for name, value in text(facts).items())
+        return all(header.get(name) == value for name, value in text(facts).items())
 
 
 def main():
@@ -136,8 +148,11 @@ def main():
         return
     register()
     started = time.time()
-    scene, see_through = gltf_scene.load(given.scene, given.size, given.camera, given.environment)
-    how, accumulator = integrator(given.transport, see_through), Accumulator()
+    try:
+        scene, needs = gltf_scene.load(given.scene, given.size, given.camera, given.environment)
+    except Unsupported as error:
+        sys.exit(f'{given.scene}: not converted: {error}')
+    how, accumulator = integrator(given.transport, needs), Accumulator()
     a_round = given.spp * ROUND // given.batches
     while accumulator.count < given.batches:
         mean, error = render(scene, how, a_round, ROUND, given.seed + accumulator.count, accumulator)

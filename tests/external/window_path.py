@@ -9,7 +9,7 @@ A path's bounces are its scatterings between the emitter and the camera:
 
 Unidirectional, next-event estimation and BSDF sampling combined by the power heuristic, no Russian roulette.
 Surfaces with opacity are there or not by a coin toss at each hit (BSDF.eval_null_transmission), shadow rays are
-multiplied by the transmission; neither counts a bounce.
+multiplied by the transmission; neither counts a bounce. Unlit surfaces count as emission, seen by the camera alone.
 """
 
 import re
@@ -35,13 +35,14 @@ def power_heuristic(pdf, other):
 
 
 class WindowPath(mi.SamplingIntegrator):
-    """Plugin `window_path` with `fewest` and `most` bounces, and `see_through`: whether any surface has opacity."""
+    """Plugin `window_path` with `fewest` and `most` bounces; `see_through`, `unlit`: whether any surface is so."""
 
     def __init__(self, props):
         super().__init__(props)
         self.fewest = props.get('fewest', 0)
         self.most = props.get('most', 1)
         self.see_through = props.get('see_through', False)
+        self.unlit = props.get('unlit', False)
 
     def traverse(self, callback):
         pass
@@ -101,6 +102,10 @@ class WindowPath(mi.SamplingIntegrator):
             wanted = active & (bounces >= self.fewest)
             emitter = si.emitter(scene, active)
             radiance[wanted] = radiance + throughput * weight * emitter.eval(si, wanted)
+
+            if dr.hint(self.unlit, mode='scalar'):
+                shown = wanted & si.is_valid() & (bounces == 0)
+                radiance[shown] = radiance + si.bsdf().eval_attribute_3('unlit', si, shown)
 
             active &= si.is_valid() & (bounces < self.most)
             bounces += 1

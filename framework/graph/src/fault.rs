@@ -17,7 +17,7 @@ impl std::error::Error for Faults {}
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// What. Its `Display` is the message, [`Cause::code`] a stable name for machines.
-    pub cause: Cause,
+    pub cause: Box<Cause>,
     /// Where: the first label is the place itself, the others show what it clashes with. Empty when no text was read.
     pub labels: Vec<Label>,
     /// How to cure it.
@@ -36,12 +36,12 @@ pub struct Label {
 impl Fault {
     /// A fault at a place, with a remark to put beside the carets.
     pub(crate) fn at(span: Span, label: impl Into<String>, cause: Cause) -> Self {
-        Fault { cause, labels: vec![Label { span, text: label.into() }], help: None }
+        Fault { cause: Box::new(cause), labels: vec![Label { span, text: label.into() }], help: None }
     }
 
     /// A fault that no text shows.
     pub(crate) fn placeless(cause: Cause) -> Self {
-        Fault { cause, labels: Vec::new(), help: None }
+        Fault { cause: Box::new(cause), labels: Vec::new(), help: None }
     }
 
     pub(crate) fn and(mut self, span: Span, label: impl Into<String>) -> Self {

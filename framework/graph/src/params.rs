@@ -11,7 +11,7 @@ pub const RESERVED_PARAMS: [&str; 2] = ["transport_min", "transport_max"];
 #[error("{cause}")]
 pub struct ParamError {
     /// What is wrong.
-    pub cause: Cause,
+    pub cause: Box<Cause>,
     /// How to cure it.
     pub help: Option<String>,
 }
@@ -51,7 +51,7 @@ impl Param {
     fn choice(&self, name: &str) -> Result<i64, ParamError> {
         let index = self.choices.iter().position(|choice| choice == name).map(|index| index as i64);
         index.ok_or_else(|| ParamError {
-            cause: Cause::UnknownChoice { param: self.name.clone(), choice: name.to_owned() },
+            cause: Box::new(Cause::UnknownChoice { param: self.name.clone(), choice: name.to_owned() }),
             help: Some(cure(name, &format!("choices of `{}`", self.name), self.choices.iter().map(String::as_str))),
         })
     }
@@ -74,7 +74,7 @@ impl Param {
         }
         let cause = Cause::NotFinite { param: self.name.clone(), found: literal.to_string() };
         let help = value.is_finite().then(|| format!("the largest number is {:e}", f32::MAX));
-        Err(ParamError { cause, help })
+        Err(ParamError { cause: Box::new(cause), help })
     }
 
     fn check_range(&self, value: Value, literal: &Literal) -> Result<(), ParamError> {
@@ -91,13 +91,13 @@ impl Param {
             Some((least, most)) => (least.to_string(), most.to_string()),
             None => (least.to_string(), most.to_string()),
         };
-        ParamError { cause: Cause::OutOfRange { what, least, most, found: found.to_string() }, help: None }
+        ParamError { cause: Box::new(Cause::OutOfRange { what, least, most, found: found.to_string() }), help: None }
     }
 
     fn wrong_type(&self, literal: &Literal) -> ParamError {
         let what = format!("parameter `{}`", self.name);
         let cause = Cause::WrongType { what, expected: self.type_name(), found: literal.type_name().to_owned() };
-        ParamError { cause, help: self.retyped(literal).map(|cured| format!("write `{cured}`")) }
+        ParamError { cause: Box::new(cause), help: self.retyped(literal).map(|cured| format!("write `{cured}`")) }
     }
 
     fn type_name(&self) -> String {
@@ -172,6 +172,8 @@ mod tests {
         assert_eq!(number.value(&Literal::Integer(3)), Ok(Value::F32(3.0)));
         assert_eq!(number.value(&Literal::Float(0.1)), Ok(Value::F32(0.1)), "an end of the range is inside, rounding or not");
         assert_eq!(number.literal(Value::F32(0.1)), Literal::Float(0.1));
+        assert_eq!(number.value(&Literal::Float(30.0)), Ok(Value::F32(30.0)));
+        assert!(number.value(&Literal::Float(30.001)).is_err());
         let operator = param(Value::U32(0), None, &["linear", "aces"]);
         assert_eq!(operator.value(&Literal::Text("aces".into())), Ok(Value::U32(1)));
         assert_eq!(operator.value(&Literal::Integer(1)), Ok(Value::U32(1)));

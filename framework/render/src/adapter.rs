@@ -54,16 +54,14 @@ pub(crate) fn choose(wanted: Option<&str>) -> Result<wgpu::Adapter, Error> {
     };
     match all.iter().position(fits) {
         Some(index) => Ok(all.remove(index)),
-        None => Err(Error::NoSuchAdapter {
-            wanted: wanted.to_owned(),
-            found: all.iter().map(|adapter| adapter.get_info().name).collect(),
-        }),
+        None => Err(Error::NoSuchAdapter { wanted: wanted.to_owned(), found: all.iter().map(|adapter| adapter.get_info().name).collect() }),
     }
 }
 
 /// An adapter that takes every command and executes none.
 pub(crate) fn noop(limits: wgpu::Limits) -> Result<wgpu::Adapter, Error> {
-    let options = wgpu::NoopBackendOptions { enable: true, limits: Some(limits), ..Default::default() };
+    let options =
+        wgpu::NoopBackendOptions { enable: true, limits: Some(limits), features: Some(wgpu::Features::empty()), ..Default::default() };
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::NOOP,
         backend_options: wgpu::BackendOptions { noop: options, ..Default::default() },

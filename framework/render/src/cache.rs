@@ -97,7 +97,8 @@ mod tests {
         let ab = [constant("a", 1.0), constant("b", 2.0)];
         let ba = [constant("b", 2.0), constant("a", 1.0)];
         assert_eq!(key("t", "e", &ab), key("t", "e", &ba));
-        let others = [key("te", "", &[]), key("t", "e", &[]), key("", "te", &[]), key("t", "e", &ab[..1]), key("t", "e", &[constant("a", 2.0)])];
+        let others =
+            [key("te", "", &[]), key("t", "e", &[]), key("", "te", &[]), key("t", "e", &ab[..1]), key("t", "e", &[constant("a", 2.0)])];
         for (index, one) in others.iter().enumerate() {
             assert!(others[..index].iter().all(|other| other != one), "{index}");
         }

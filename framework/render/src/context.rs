@@ -38,6 +38,7 @@ pub enum LimitChoice {
 #[derive(Clone, Debug)]
 pub struct Context {
     inner: Arc<Inner>,
+    patience: Duration,
 }
 
 #[derive(Debug)]
@@ -46,7 +47,6 @@ struct Inner {
     queue: wgpu::Queue,
     adapter: AdapterReport,
     limits: wgpu::Limits,
-    patience: Duration,
     trouble: Arc<Trouble>,
     pipelines: PipelineCache,
     opened_in: Duration,
@@ -70,7 +70,7 @@ impl Context {
         Self::open(&adapter::choose(options.adapter.as_deref())?, options, begin)
     }
 
-    /// A device of the given size that checks every call and executes none: for trying pipelines, bindings and limits without a driver.
+    /// A device of the given size and no optional feature that checks every call and executes none: for trying pipelines, bindings and limits without a driver.
     ///
     /// # Errors
     /// [`Error::NoDevice`], for limits that contradict each other.
@@ -91,8 +91,8 @@ impl Context {
             required_limits: wanted,
             ..Default::default()
         });
-        let (device, queue) = pollster::block_on(request)
-            .map_err(|error| Error::NoDevice { adapter: report.name.clone(), message: error.to_string() })?;
+        let (device, queue) =
+            pollster::block_on(request).map_err(|error| Error::NoDevice { adapter: report.name.clone(), message: error.to_string() })?;
         let trouble = Arc::new(Trouble::default());
         listen(&device, &trouble);
         tracing::debug!(adapter = report.name, backend = report.backend, driver = report.driver, "device opened");
@@ -102,12 +102,17 @@ impl Context {
                 device,
                 queue,
                 adapter: report,
-                patience: options.patience,
                 trouble,
                 pipelines: PipelineCache::default(),
                 opened_in: begin.elapsed(),
             }),
+            patience: options.patience,
         })
+    }
+
+    /// The same device, whose passes are waited for so long before they count as hung.
+    pub fn with_patience(&self, patience: Duration) -> Context {
+        Context { patience, ..self.clone() }
     }
 
     /// The device.
@@ -151,9 +156,8 @@ impl Context {
     /// [`Error::Validation`], [`Error::Internal`], [`Error::OutOfMemory`], [`Error::DeviceLost`].
     pub fn guard<T>(&self, what: &str, work: impl FnOnce() -> T) -> Result<T, Error> {
         self.health()?;
-        let [memory, internal, validation] =
-            [wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation]
-                .map(|filter| self.inner.device.push_error_scope(filter));
+        let [memory, internal, validation] = [wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation]
+            .map(|filter| self.inner.device.push_error_scope(filter));
         let value = work();
         // Scopes close in the reverse order of their opening.
         let caught = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
@@ -169,8 +173,7 @@ impl Context {
     /// # Errors
     /// [`Error::Hung`] names `pass` when the context's patience runs out; [`Error::DeviceLost`].
     pub fn wait(&self, submission: &wgpu::SubmissionIndex, pass: &str) -> Result<(), Error> {
-        let patience = self.inner.patience;
-        let poll = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(patience) };
+        let poll = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(self.patience) };
         match self.inner.device.poll(poll) {
             Ok(_) => self.health(),
             Err(wgpu::PollError::Timeout) => Err(self.give_up(pass)),
@@ -187,7 +190,7 @@ impl Context {
     pub fn health(&self) -> Result<(), Error> {
         let trouble = &self.inner.trouble;
         if let Some(pass) = trouble.hung.get() {
-            return Err(Error::Hung { pass: pass.clone(), limit: self.inner.patience });
+            return Err(Error::Hung { pass: pass.clone(), limit: self.patience });
         }
         if let Some(message) = trouble.lost.get() {
             return Err(Error::DeviceLost { message: message.clone() });
@@ -200,14 +203,14 @@ impl Context {
         let pass = self.inner.trouble.hung.get_or_init(|| pass.to_owned()).clone();
         // Dropping a queue waits for its work without bound, which would hang the process here.
         mem::forget(self.clone());
-        Error::Hung { pass, limit: self.inner.patience }
+        Error::Hung { pass, limit: self.patience }
     }
 }
 
 fn listen(device: &wgpu::Device, trouble: &Arc<Trouble>) {
     let lost = Arc::downgrade(trouble);
-    device.set_device_lost_callback(move |reason, message| {
-        if let (wgpu::DeviceLostReason::Unknown, Some(trouble)) = (reason, lost.upgrade()) {
+    device.set_device_lost_callback(move |_, message| {
+        if let Some(trouble) = lost.upgrade() {
             // Only the first loss says why.
             trouble.lost.get_or_init(|| message);
         }

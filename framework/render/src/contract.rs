@@ -71,9 +71,11 @@ fn port(binding: &Binding) -> Result<Port, String> {
             ));
         }
     };
-    let extent = tag(&binding.tags, "extent").map_or(Ok(natural), |text| extent(text).ok_or_else(|| {
-        format!("{}: `@extent {text}` of `{}` is none of `pixels`, `tiles W H`, `fixed N`", binding.module, binding.name)
-    }))?;
+    let extent = tag(&binding.tags, "extent").map_or(Ok(natural), |text| {
+        extent(text).ok_or_else(|| {
+            format!("{}: `@extent {text}` of `{}` is none of `pixels`, `tiles W H`, `fixed N`", binding.module, binding.name)
+        })
+    })?;
     Ok(Port {
         name: binding.name.clone(),
         direction: direction(binding),
@@ -105,9 +107,8 @@ fn live_params(ty: &Layout, slot: Option<String>, contract: &mut Contract) -> Re
     // Names that begin with `_` are padding.
     for member in ty.members.iter().filter(|member| !member.name.starts_with('_')) {
         let Member { name, tags, doc, .. } = member;
-        let scalar = scalar(&member.ty.name).ok_or_else(|| {
-            format!("member `{name}` of `{LIVE}` is {}: parameters are f32, i32 or u32", member.ty.name)
-        })?;
+        let scalar = scalar(&member.ty.name)
+            .ok_or_else(|| format!("member `{name}` of `{LIVE}` is {}: parameters are f32, i32 or u32", member.ty.name))?;
         add_param(Declared { name, scalar, default: None, tags, doc, live: true, slot: slot.clone() }, contract)?;
     }
     Ok(())
@@ -261,10 +262,7 @@ mod tests {
         };
         let contract = contract(&interface).unwrap();
         let found: Vec<_> = contract.params.iter().map(|param| (param.name.as_str(), param.default, param.live)).collect();
-        assert_eq!(
-            found,
-            [("exposure", Value::F32(1.5), true), ("curve", Value::U32(1), true), ("taps", Value::U32(5), false)]
-        );
+        assert_eq!(found, [("exposure", Value::F32(1.5), true), ("curve", Value::U32(1), true), ("taps", Value::U32(5), false)]);
         assert_eq!(contract.params[0].range, Some((-8.0, 8.0)));
         let bias = Bias { slot: None, param: Some("curve".into()), unless: Some("linear".into()), why: "it clips".into() };
         assert_eq!(contract.bias, [bias]);

@@ -1,8 +1,7 @@
 //! A plan on a device: one wgpu pass and one submission a step, so that each can be timed, and named when it hangs.
 
 use crate::{
-    Context, Error, Frame, FrameInfo, Globals, MemoryReport, Registry, Startup, Timings,
-    limits, node,
+    Context, Error, Frame, FrameInfo, Globals, MemoryReport, Registry, Startup, Timings, limits, node,
     node::{Memory, Node, Work},
     pool::{Part, Pool},
     readback::Mapping,
@@ -59,12 +58,7 @@ impl Executor {
         let stamps = Stamps::new(context, nodes.len())?;
         let clock = if stamps.is_some() { Clock::Timestamps } else { Clock::Wall };
         let names = plan.steps.iter().map(|step| step.node.clone()).collect();
-        let startup = Startup {
-            compose: composed - begin,
-            pipelines: compiled - composed,
-            memory: compiled.elapsed(),
-            first_frame: None,
-        };
+        let startup = Startup { compose: composed - begin, pipelines: compiled - composed, memory: compiled.elapsed(), first_frame: None };
         Ok(Executor {
             context: context.clone(),
             plan,

@@ -24,11 +24,8 @@ pub(crate) fn entries(composed: &Composed, bindings: &[Binding], group: u32) -> 
 }
 
 fn ty(composed: &Composed, binding: &Binding, sampled: bool) -> Option<wgpu::BindingType> {
-    let buffer = |ty, least: u32| wgpu::BindingType::Buffer {
-        ty,
-        has_dynamic_offset: false,
-        min_binding_size: NonZeroU64::new(least.into()),
-    };
+    let buffer =
+        |ty, least: u32| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: NonZeroU64::new(least.into()) };
     let storage = |writable: bool| wgpu::BufferBindingType::Storage { read_only: !writable };
     Some(match &binding.resource {
         ResourceKind::Uniform { ty } => buffer(wgpu::BufferBindingType::Uniform, ty.size),
@@ -42,8 +39,7 @@ fn ty(composed: &Composed, binding: &Binding, sampled: bool) -> Option<wgpu::Bin
 fn texture(module: &naga::Module, binding: &Binding, sampled: bool) -> Option<wgpu::BindingType> {
     let place = naga::ResourceBinding { group: binding.group, binding: binding.binding };
     let (_, variable) = module.global_variables.iter().find(|(_, variable)| variable.binding == Some(place))?;
-    let naga::TypeInner::Image { dim, arrayed, class: naga::ImageClass::Sampled { kind, multi } } = module.types[variable.ty].inner
-    else {
+    let naga::TypeInner::Image { dim, arrayed, class: naga::ImageClass::Sampled { kind, multi } } = module.types[variable.ty].inner else {
         return None;
     };
     Some(wgpu::BindingType::Texture {

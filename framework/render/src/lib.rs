@@ -27,6 +27,7 @@ mod run_once;
 mod scene;
 mod stamps;
 mod timing;
+mod workgroup_memory;
 
 pub use adapter::{AdapterReport, adapters};
 pub use context::{Context, ContextOptions, LimitChoice};

@@ -1,6 +1,6 @@
 //! What an adapter offers, and whether a plan fits into it: said before anything is allocated.
 
-use crate::Error;
+use crate::{Error, workgroup_memory};
 use aquifer_graph::{Extent, Plan, Step};
 use aquifer_shader::{Composed, Entry, Interface, ResourceKind, Stage};
 use std::collections::BTreeMap;
@@ -80,8 +80,7 @@ impl Need {
 }
 
 /// One binding of a storage buffer, in bytes.
-pub const BINDING_SIZE: Need =
-    Need { limit: "max_storage_buffer_binding_size", unit: "bytes", cure: "; a smaller --size needs less" };
+pub const BINDING_SIZE: Need = Need { limit: "max_storage_buffer_binding_size", unit: "bytes", cure: "; a smaller --size needs less" };
 /// One buffer, in bytes.
 pub const BUFFER_SIZE: Need = Need { limit: "max_buffer_size", unit: "bytes", cure: "; a smaller --size needs less" };
 
@@ -89,12 +88,7 @@ pub const BUFFER_SIZE: Need = Need { limit: "max_buffer_size", unit: "bytes", cu
 ///
 /// # Errors
 /// [`Error::LimitTooSmall`] names the step or resource; [`Error::EmptyImage`].
-pub fn check<'a>(
-    plan: &Plan,
-    shaders: impl IntoIterator<Item = &'a Composed>,
-    size: [u32; 2],
-    limits: &wgpu::Limits,
-) -> Result<(), Error> {
+pub fn check<'a>(plan: &Plan, shaders: impl IntoIterator<Item = &'a Composed>, size: [u32; 2], limits: &wgpu::Limits) -> Result<(), Error> {
     let [width, height] = size;
     if width == 0 || height == 0 {
         return Err(Error::EmptyImage { width, height });
@@ -107,6 +101,7 @@ pub fn check<'a>(
     for (step, shader) in plan.steps.iter().zip(shaders) {
         unwired_fit(step, size, limits)?;
         entries_fit(&step.node, &shader.interface, limits)?;
+        workgroup_memory::check(&step.node, shader, limits)?;
         dispatches_fit(step, &shader.interface, size, limits)?;
     }
     Ok(())

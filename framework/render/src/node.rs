@@ -70,7 +70,14 @@ pub(crate) fn compile(context: &Context, step: &Step, known: &Known) -> Result<V
 
 impl Work {
     /// Binds the kernels of step `index` to the pool's memory.
-    pub fn new(context: &Context, plan: &Plan, index: usize, known: &Known, kernels: Vec<Kernel>, memory: Memory<'_>) -> Result<Work, Error> {
+    pub fn new(
+        context: &Context,
+        plan: &Plan,
+        index: usize,
+        known: &Known,
+        kernels: Vec<Kernel>,
+        memory: Memory<'_>,
+    ) -> Result<Work, Error> {
         let (step, interface) = (&plan.steps[index], &known.composed.interface);
         let live = live(context, step, known)?;
         let ready = |kernel: Kernel| {
@@ -153,10 +160,11 @@ impl Work {
         entry: &str,
         workgroups: Option<[u32; 3]>,
     ) -> Result<(), PassError> {
-        let ready = self.kernels.iter().find(|ready| ready.kernel.entry() == entry).ok_or_else(|| PassError::NoEntry {
-            entry: entry.to_owned(),
-            known: self.entries().map(str::to_owned).collect(),
-        })?;
+        let ready = self
+            .kernels
+            .iter()
+            .find(|ready| ready.kernel.entry() == entry)
+            .ok_or_else(|| PassError::NoEntry { entry: entry.to_owned(), known: self.entries().map(str::to_owned).collect() })?;
         ready.dispatch(compute, parity, workgroups.unwrap_or(ready.workgroups));
         Ok(())
     }
@@ -169,9 +177,7 @@ impl Work {
     pub fn set(&mut self, name: &str, value: Value) -> Result<(), PassError> {
         let known = self.live();
         match &mut self.live {
-            Some(live) if live.params.has(name) => {
-                live.params.set(name, value).map_err(|error| PassError::WrongValue(error.to_string()))
-            }
+            Some(live) if live.params.has(name) => live.params.set(name, value).map_err(|error| PassError::WrongValue(error.to_string())),
             _ => Err(PassError::NotLive { name: name.to_owned(), known }),
         }
     }

@@ -90,7 +90,11 @@ impl Pool {
         let index = match (self.homes[half.resource], half.when) {
             (Home::One(index), _) => index,
             (Home::Pair(even, odd), when) => {
-                if (parity == 0) == (when == When::This) { even } else { odd }
+                if (parity == 0) == (when == When::This) {
+                    even
+                } else {
+                    odd
+                }
             }
         };
         Part { buffer: &self.buffers[index], bytes: self.bytes[half.resource] }

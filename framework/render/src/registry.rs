@@ -71,8 +71,8 @@ impl Registry {
             return Ok(known.clone());
         }
         let composed = self.library.compose(&what).map_err(|error| self.refused(name, error))?;
-        let mut contract = contract(&composed.interface)
-            .map_err(|message| ContractError::Shader(format!("{}.wgsl: {message}", kind.shader)))?;
+        let mut contract =
+            contract(&composed.interface).map_err(|message| ContractError::Shader(format!("{}.wgsl: {message}", kind.shader)))?;
         if !kind.about.is_empty() {
             contract.about = kind.about.to_owned();
         }

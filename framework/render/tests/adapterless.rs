@@ -3,7 +3,7 @@
 mod common;
 
 use aquifer_graph::{Contracts, Direction, Slots};
-use aquifer_render::{Context, ContextOptions, Error, LimitChoice, Renderer, RendererOptions};
+use aquifer_render::{Clock, Context, ContextOptions, Error, LimitChoice, Renderer, RendererOptions};
 use common::{TestGlobals, plan, registry, small};
 
 fn small_device() -> Context {
@@ -37,7 +37,7 @@ fn a_resource_beyond_the_limits_is_named_with_needed_and_offered_bytes() {
          a smaller --size needs less"
     );
     assert!(!error.is_temporary());
-    let error = refused(&small_device(), "lengths.image", "[pass.lengths]\n", [3000, 2796]);
+    let error = refused(&small_device(), "lengths.image", "[pass.lengths]\n", [3000, 2797]);
     assert!(error.to_string().contains("`lengths.image` needs"), "{error}");
 }
 
@@ -56,15 +56,19 @@ fn too_many_bindings_are_named_with_their_entry_point() {
 }
 
 #[test]
-fn an_empty_image_is_refused() {
-    let error = refused(&small_device(), "source.value", "[pass.source]\n", [0, 8]);
-    assert_eq!(error.to_string(), "an image of 0x8 pixels is empty");
+fn too_much_workgroup_memory_is_named_with_its_entry_point() {
+    let error = refused(&small_device(), "big.value", "[pass.big]\nkind = \"bloated\"\n", [8, 8]);
+    assert_eq!(
+        error.to_string(),
+        "entry point `main` of pass `big` needs 4000000 bytes of workgroup memory, but the adapter offers 16384 \
+         (max_compute_workgroup_storage_size)"
+    );
 }
 
 #[test]
-fn a_pipeline_that_wgpu_refuses_names_its_pass_without_a_driver() {
-    let error = refused(&small_device(), "big.value", "[pass.big]\nkind = \"bloated\"\n", [8, 8]);
-    assert!(matches!(&error, Error::Validation { pass, .. } if pass == "big"), "{error}");
+fn an_empty_image_is_refused() {
+    let error = refused(&small_device(), "source.value", "[pass.source]\n", [0, 8]);
+    assert_eq!(error.to_string(), "an image of 0x8 pixels is empty");
 }
 
 #[test]
@@ -78,6 +82,23 @@ fn frames_are_recorded_and_checked_without_a_driver() {
     }
     assert_eq!(renderer.read("count.after").unwrap().len(), 13 * 9 * 16);
     assert_eq!(renderer.memory().resources[0].life, "history");
+    let timings = renderer.timings();
+    assert_eq!((timings.clock, timings.frames), (Clock::Wall, 3), "a device without timestamps is timed by the host");
+    assert!(timings.passes[0].median_ms.is_some());
+}
+
+#[test]
+fn a_lost_device_is_an_error_that_may_pass() {
+    let context = small_device();
+    let registry = registry(&[]);
+    let plan = plan(&registry, "source.value", "[pass.source]\n", &[]);
+    let mut renderer = Renderer::new(&context, &registry, plan, TestGlobals::new(&context), small()).unwrap();
+    renderer.frame().unwrap();
+    context.device().destroy();
+    context.device().poll(wgpu::PollType::Poll).unwrap();
+    let error = renderer.frame().unwrap_err();
+    assert!(matches!(error, Error::DeviceLost { .. }), "{error}");
+    assert!(error.is_temporary());
 }
 
 #[test]

@@ -107,9 +107,8 @@ fn a_large_image_comes_back_whole() {
     render(&mut renderer, 1);
     let found = pixels(&mut renderer, "position.image");
     assert_eq!(found.len(), 1031 * 1027);
-    let wrong = found.iter().enumerate().find(|&(i, pixel)| {
-        *pixel != [(i % 1031) as f32, (i / 1031) as f32, i as f32, (1031 * 1027) as f32]
-    });
+    let wrong =
+        found.iter().enumerate().find(|&(i, pixel)| *pixel != [(i % 1031) as f32, (i / 1031) as f32, i as f32, (1031 * 1027) as f32]);
     assert_eq!(wrong, None);
 }
 

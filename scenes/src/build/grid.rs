@@ -1,17 +1,12 @@
 //! Height fields as meshes.
 
+use super::normals::smooth_normals;
 use aquifer_scene::Mesh;
 use glam::{Vec2, Vec3, Vec4};
 
-/// A square height field centred on the origin, `side` metres across, of `cells` × `cells` × 2 triangles, all of material 0. Normals come from
-/// the heights' central differences. `color` gives a vertex colour from position and normal, if wanted.
-pub fn height_field(
-    name: &str,
-    side: f32,
-    cells: u32,
-    height: impl Fn(Vec2) -> f32,
-    color: Option<&dyn Fn(Vec3, Vec3) -> Vec3>,
-) -> Mesh {
+/// A square height field centred on the origin, `side` metres across, of `cells` × `cells` × 2 triangles, all of material 0, with
+/// smooth normals. `color` gives a vertex colour from position and normal, if wanted.
+pub fn height_field(name: &str, side: f32, cells: u32, height: impl Fn(Vec2) -> f32, color: Option<&dyn Fn(Vec3, Vec3) -> Vec3>) -> Mesh {
     let row = cells + 1;
     let step = side / cells as f32;
     let place = |column: u32, line: u32| Vec2::new(column as f32, line as f32) * step - Vec2::splat(0.5 * side);
@@ -22,21 +17,13 @@ pub fn height_field(
             Vec3::new(at.x, height(at), at.y)
         })
         .collect();
-    let normals: Vec<Vec3> = grid().map(|(column, line)| grid_normal(&positions, row, column, line)).collect();
+    let triangles = grid_triangles(cells);
+    let normals = smooth_normals(&positions, &triangles);
     let colors = color.map_or(Vec::new(), |color| {
         positions.iter().zip(&normals).map(|(position, normal)| Vec4::from((color(*position, *normal), 1.0))).collect()
     });
-    let triangles = grid_triangles(cells);
     let materials = vec![0; triangles.len()];
     Mesh { name: name.into(), positions, normals, colors, triangles, materials, ..Mesh::default() }
-}
-
-fn grid_normal(positions: &[Vec3], row: u32, column: u32, line: u32) -> Vec3 {
-    let at = |column: u32, line: u32| positions[(line * row + column) as usize];
-    let last = row - 1;
-    let across = at((column + 1).min(last), line) - at(column.saturating_sub(1), line);
-    let along = at(column, (line + 1).min(last)) - at(column, line.saturating_sub(1));
-    along.cross(across).normalize()
 }
 
 fn grid_triangles(cells: u32) -> Vec<[u32; 3]> {

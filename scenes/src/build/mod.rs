@@ -3,6 +3,7 @@
 mod grid;
 mod material;
 mod noise;
+mod normals;
 mod opening;
 mod paint;
 mod place;

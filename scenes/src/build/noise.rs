@@ -1,6 +1,6 @@
 //! Smooth noise from a hash, the same on every machine.
 
-use glam::{IVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 /// Value noise on the integer lattice with quintic blending, optionally periodic.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ impl Noise {
         let t = point - cell;
         let blend = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
         let cell = cell.as_ivec3();
-        let corner = |x, y, z| self.lattice(cell + IVec3::new(x, y, z));
+        let corner = |x: i32, y: i32, z: i32| self.hash([cell.x + x, cell.y + y, cell.z + z]);
         let along_x = |y, z| mix(corner(0, y, z), corner(1, y, z), blend.x);
         let along_y = |z| mix(along_x(0, z), along_x(1, z), blend.y);
         mix(along_y(0), along_y(1), blend.z)
@@ -34,25 +34,39 @@ impl Noise {
 
     /// Several octaves, each twice as fine and half as strong, normalised to \[0, 1\].
     pub fn fractal(&self, point: Vec3, octaves: u32) -> f32 {
-        let (mut sum, mut total, mut layer, mut point) = (0.0, 0.0, *self, point);
-        for octave in 0..octaves {
-            let weight = 0.5_f32.powi(octave as i32);
-            sum += weight * layer.at(point);
-            total += weight;
-            point *= 2.0;
-            layer = Self { seed: layer.seed.wrapping_add(1), period: layer.period.map(|p| p * 2) };
-        }
-        sum / total
+        self.octaves(octaves, |layer, scale| layer.at(point * scale))
+    }
+
+    /// [`Noise::at`] over a plane.
+    pub fn plane_at(&self, point: Vec2) -> f32 {
+        let cell = point.floor();
+        let t = point - cell;
+        let blend = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+        let cell = cell.as_ivec2();
+        let row = |y| mix(self.hash([cell.x, cell.y + y]), self.hash([cell.x + 1, cell.y + y]), blend.x);
+        mix(row(0), row(1), blend.y)
     }
 
     /// [`Noise::fractal`] over a plane.
     pub fn plane(&self, point: Vec2, octaves: u32) -> f32 {
-        self.fractal(point.extend(0.5), octaves)
+        self.octaves(octaves, |layer, scale| layer.plane_at(point * scale))
     }
 
-    fn lattice(&self, cell: IVec3) -> f32 {
-        let cell = self.period.map_or(cell, |period| cell.rem_euclid(IVec3::splat(period)));
-        let mixed = [cell.x, cell.y, cell.z].iter().fold(self.seed, |hash, c| pcg(hash ^ pcg(*c as u32)));
+    fn octaves(&self, count: u32, value: impl Fn(Self, f32) -> f32) -> f32 {
+        let (mut sum, mut total) = (0.0, 0.0);
+        for octave in 0..count {
+            let weight = 0.5_f32.powi(octave as i32);
+            let layer = Self { seed: self.seed.wrapping_add(octave), period: self.period.map(|period| period << octave) };
+            sum += weight * value(layer, (1 << octave) as f32);
+            total += weight;
+        }
+        sum / total
+    }
+
+    /// The lattice's own value, in \[0, 1).
+    fn hash<const N: usize>(&self, cell: [i32; N]) -> f32 {
+        let cell = self.period.map_or(cell, |period| cell.map(|c| c.rem_euclid(period)));
+        let mixed = cell.into_iter().fold(self.seed, |hash, c| pcg(hash.wrapping_add(c as u32)));
         (mixed >> 8) as f32 / (1 << 24) as f32
     }
 }
@@ -80,6 +94,9 @@ mod tests {
             let value = noise.plane(point, 4);
             assert!((0.0..=1.0).contains(&value));
             assert!((value - noise.plane(point + Vec2::splat(4.0), 4)).abs() < 1e-4);
+            let solid = noise.fractal(point.extend(0.3), 4);
+            assert!((0.0..=1.0).contains(&solid));
+            assert!((solid - noise.fractal(point.extend(0.3) - Vec3::splat(4.0), 4)).abs() < 1e-4);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Flat-sided shapes, and the mesh they gather in.
 
+use super::normals::smooth_normals;
 use aquifer_scene::Mesh;
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -107,21 +108,7 @@ impl Shape {
         for (position, normal) in self.mesh.positions.iter_mut().zip(&self.mesh.normals) {
             *position += offset(*position, *normal);
         }
-        self.smooth();
-    }
-
-    fn smooth(&mut self) {
-        let mut sums = vec![Vec3::ZERO; self.mesh.positions.len()];
-        for triangle in &self.mesh.triangles {
-            let [a, b, c] = triangle.map(|i| self.mesh.positions[i as usize]);
-            let weighted = (b - a).cross(c - a);
-            for index in triangle {
-                sums[*index as usize] += weighted;
-            }
-        }
-        for (normal, sum) in self.mesh.normals.iter_mut().zip(sums) {
-            *normal = sum.normalize_or(*normal);
-        }
+        self.mesh.normals = smooth_normals(&self.mesh.positions, &self.mesh.triangles);
     }
 }
 
@@ -129,12 +116,5 @@ impl Shape {
 fn box_faces(low: Vec3, high: Vec3) -> [[Vec3; 3]; 6] {
     let size = high - low;
     let (x, y, z) = (Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z);
-    [
-        [low, z, y],
-        [low + x + z, -z, y],
-        [low, x, z],
-        [low + y + z, x, -z],
-        [low + x, -x, y],
-        [low + z, x, y],
-    ]
+    [[low, z, y], [low + x + z, -z, y], [low, x, z], [low + y + z, x, -z], [low + x, -x, y], [low + z, x, y]]
 }

@@ -1,9 +1,7 @@
 //! A scene in the making.
 
 use super::{Place, Shape, facing};
-use aquifer_scene::{
-    Channel, Environment, Image, Interpolation, Lens, Material, Mesh, Node, PunctualLight, PunctualShape, Scene, Track,
-};
+use aquifer_scene::{Channel, Environment, Image, Interpolation, Lens, Material, Mesh, Node, PunctualLight, PunctualShape, Scene, Track};
 use glam::Vec3;
 
 /// Near plane of every camera made here, metres.

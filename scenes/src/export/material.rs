@@ -49,11 +49,7 @@ fn object(material: &Material, textures: &mut Textures, extensions: &mut BTreeSe
     Ok(object.into())
 }
 
-fn metallic_roughness(
-    material: &Material,
-    textures: &mut Textures,
-    extensions: &mut BTreeSet<&'static str>,
-) -> Result<Value, ExportError> {
+fn metallic_roughness(material: &Material, textures: &mut Textures, extensions: &mut BTreeSet<&'static str>) -> Result<Value, ExportError> {
     let mut object = json!({
         "baseColorFactor": material.base_color.to_array(),
         "metallicFactor": material.metallic,

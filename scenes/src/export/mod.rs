@@ -49,7 +49,8 @@ pub fn export(scene: &Scene) -> Result<Exported, ExportError> {
     parts.list("animations", animations);
     light::write(scene, &mut parts)?;
     let roots: Vec<usize> = (0..scene.nodes.len()).filter(|i| scene.nodes[*i].parent.is_none()).collect();
-    parts.list("scenes", vec![if roots.is_empty() { json!({ "name": scene.name }) } else { json!({ "name": scene.name, "nodes": roots }) }]);
+    parts
+        .list("scenes", vec![if roots.is_empty() { json!({ "name": scene.name }) } else { json!({ "name": scene.name, "nodes": roots }) }]);
     let glb = parts.into_glb()?;
     Ok(Exported { glb, environment })
 }

@@ -45,14 +45,14 @@ struct Relief {
 
 impl Relief {
     fn new() -> Self {
-        Self { hills: Noise::new(101), ridges: Noise::new(202) }
+        Self { hills: Noise::new(101), ridges: Noise::new(5) }
     }
 
     /// One peak of sharp ridges above rolling land.
     fn height(&self, at: Vec2) -> f32 {
         let from_peak = (at - Vec2::new(40.0, -80.0)).length() / 430.0;
         let peak = (-from_peak * from_peak).exp();
-        let bend = Vec2::new(self.hills.plane(at * 0.006 + 3.0, 3), self.hills.plane(at * 0.006 - 9.0, 3)) * 90.0;
+        let bend = Vec2::new(self.hills.plane(at * 0.006 + 3.0, 2), self.hills.plane(at * 0.006 - 9.0, 2)) * 60.0;
         let rolling = 75.0 * self.hills.plane(at * 0.004, 5);
         let from_lake = (at - Vec2::new(-40.0, 400.0)).length() / 150.0;
         let basin = -66.0 * (-from_lake * from_lake).exp();
@@ -63,7 +63,7 @@ impl Relief {
     fn ridge(&self, point: Vec2) -> f32 {
         let (mut sum, mut weight, mut scale, mut point) = (0.0, 1.0, 0.5, point);
         for _ in 0..5 {
-            let crest = 1.0 - (2.0 * self.ridges.plane(point, 1) - 1.0).abs();
+            let crest = 1.0 - (2.0 * self.ridges.plane_at(point) - 1.0).abs();
             let crest = crest * crest * weight;
             sum += crest * scale;
             weight = (crest * 1.6).clamp(0.0, 1.0);

@@ -45,8 +45,16 @@ const ALL: &[Generator] = &[
     Generator { name: "door_ajar", about: "a room lit only through a door that stands ajar", make: door_ajar::door_ajar },
     Generator { name: "sunlit_wall", about: "a sunlit wall lights a floor that lies in shadow", make: sunlit_wall::sunlit_wall },
     Generator { name: "sun_room", about: "a room with one window: sun, point and spot lights", make: sun_room::sun_room },
-    Generator { name: "textured", about: "brick, tiles, a normal map, a lit sign, cut-out leaves, stained glass", make: textured::textured },
-    Generator { name: "many_lights", about: "a hall with 5,120 emissive triangles of widely differing power", make: many_lights::many_lights },
+    Generator {
+        name: "textured",
+        about: "brick, tiles, a normal map, a lit sign, cut-out leaves, stained glass",
+        make: textured::textured,
+    },
+    Generator {
+        name: "many_lights",
+        about: "a hall with 5,120 emissive triangles of widely differing power",
+        make: many_lights::many_lights,
+    },
     Generator { name: "point_lights", about: "an amphitheatre with 2,000 point lights", make: point_lights::point_lights },
     Generator { name: "animated", about: "camera, objects and lights move, in a loop of four seconds", make: animated::animated },
     Generator { name: "million", about: "a mountain of more than a million triangles in one mesh", make: million::million },

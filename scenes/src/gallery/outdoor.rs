@@ -16,7 +16,7 @@ const CABIN: Vec2 = Vec2::new(-13.0, -18.0);
 
 pub(super) fn outdoor() -> Scene {
     let mut stage = Stage::new("outdoor");
-    let land = Land { noise: Noise::new(77) };
+    let land = Land { noise: Noise::new(5) };
     add_land(&mut stage, &land);
     add_trees(&mut stage, &land);
     add_rocks(&mut stage, &land);

@@ -27,12 +27,7 @@ fn add_room(stage: &mut Stage) {
     let mut room = Shape::new("room");
     let sides = [Some(plaster), None, Some(oak), Some(plaster), Some(plaster), Some(plaster)];
     room.room(sides, LOW, HIGH);
-    let wall = Wall {
-        corner: Vec3::new(HIGH[0], 0.0, LOW[2]),
-        right: Vec3::Z,
-        up: Vec3::Y,
-        size: Vec2::new(HIGH[2] - LOW[2], HIGH[1]),
-    };
+    let wall = Wall { corner: Vec3::new(HIGH[0], 0.0, LOW[2]), right: Vec3::Z, up: Vec3::Y, size: Vec2::new(HIGH[2] - LOW[2], HIGH[1]) };
     let (low, high) = (Vec2::new(0.8, 0.7), Vec2::new(2.9, 2.3));
     room.pierced_wall(plaster, wall, low, high, 0.22);
     stage.add(room);

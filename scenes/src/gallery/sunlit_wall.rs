@@ -15,8 +15,8 @@ pub(super) fn sunlit_wall() -> Scene {
     let mut stage = Stage::new("sunlit_wall");
     add_yard(&mut stage);
     add_things(&mut stage);
-    stage.sun("sun", [-0.20, -0.95, -0.24], [34.0, 31.5, 26.5]);
-    stage.camera("main", [2.3, 1.5, 2.25], [-0.75, 0.8, -1.0], 52.0);
+    stage.sun("sun", [-0.20, -0.95, -0.24], [27.0, 25.0, 21.0]);
+    stage.camera("main", [2.0, 1.4, 2.2], [-0.75, 0.66, -1.0], 48.0);
     stage.camera("floor", [0.6, 1.1, 1.6], [-1.6, 0.1, -0.5], 45.0);
     stage.into_scene()
 }

@@ -85,9 +85,8 @@ fn add_globe(stage: &mut Stage) {
         let height = noise.fractal(Vec3::new(around.x, cos, around.y) * 2.2 + 7.0, 5);
         ((height - 0.50) * 40.0).clamp(0.0, 1.0)
     };
-    let color = stage.image(paint("globe", [512, 256], |uv| {
-        Vec3::new(0.03, 0.12, 0.22).lerp(Vec3::new(1.0, 0.78, 0.34), land(uv)).extend(1.0)
-    }));
+    let color =
+        stage.image(paint("globe", [512, 256], |uv| Vec3::new(0.03, 0.12, 0.22).lerp(Vec3::new(1.0, 0.78, 0.34), land(uv)).extend(1.0)));
     let rough = stage.image(paint_data("globe metal", [512, 256], |uv| {
         let land = land(uv);
         Vec4::new(0.0, 0.55 - 0.3 * land, land, 1.0)
@@ -125,9 +124,7 @@ fn lit(uv: Vec2) -> bool {
 
 /// A lit sign: an emission map, filtered to the nearest texel so that its edges stay sharp, beside a mirrored border.
 fn add_sign(stage: &mut Stage) {
-    let letters = stage.image(paint("letters", [250, 90], |uv| {
-        if lit(uv) { Vec4::ONE } else { Vec4::new(0.0, 0.0, 0.0, 1.0) }
-    }));
+    let letters = stage.image(paint("letters", [250, 90], |uv| if lit(uv) { Vec4::ONE } else { Vec4::new(0.0, 0.0, 0.0, 1.0) }));
     let sharp = TextureRef { linear: false, wrap: [Wrap::Clamp; 2], ..tiled(letters) };
     let face = stage.material(Material {
         emission: Vec3::new(9.0, 3.2, 0.9),

@@ -6,7 +6,8 @@ use aquifer_scene::Scene;
 use glam::{Quat, Vec3};
 
 /// Roughness, height, depth and tilt (degrees, towards the camera) of each plate, farthest first.
-const PLATES: [(f32, f32, f32, f32); 4] = [(0.12, 1.72, -2.6, 38.0), (0.20, 1.10, -1.75, 28.0), (0.32, 0.62, -0.8, 19.0), (0.50, 0.28, 0.25, 11.0)];
+const PLATES: [(f32, f32, f32, f32); 4] =
+    [(0.12, 1.72, -2.6, 38.0), (0.20, 1.10, -1.75, 28.0), (0.32, 0.62, -0.8, 19.0), (0.50, 0.28, 0.25, 11.0)];
 /// Radius (metres) and hue of each light, left to right.
 const LIGHTS: [(f32, [f32; 3]); 4] =
     [(0.035, [1.0, 0.86, 0.66]), (0.10, [1.0, 0.62, 0.42]), (0.26, [0.60, 1.0, 0.72]), (0.55, [0.56, 0.72, 1.0])];

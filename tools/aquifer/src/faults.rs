@@ -114,16 +114,26 @@ mod tests {
         let child = sources.add(Source::new("child.toml", "[pass.shade]\nin.color = \"nowhere.color\"\n"));
         let parent = sources.add(Source::new("parent.toml", "output = \"shade.image\"\n"));
         let fault = Fault {
-            cause: Cause::UnknownPass { pass: "nowhere".into() },
+            cause: Box::new(Cause::UnknownPass { pass: "nowhere".into() }),
             labels: vec![
                 Label { span: Span::new(child, 24..39), text: "named here".into() },
                 Label { span: Span::new(parent, 9..22), text: "wanted here".into() },
             ],
             help: Some("remove it".into()),
         };
-        let placeless = Fault { cause: Cause::MissingKey { key: "output" }, labels: Vec::new(), help: None };
+        let placeless = Fault { cause: Box::new(Cause::MissingKey { key: "output" }), labels: Vec::new(), help: None };
         let text = render(&Faults { sources, list: vec![fault, placeless] }, false);
-        let needed = ["unknown-pass", "there is no pass `nowhere`", "child.toml:2:12", "named here", "parent.toml:1:10", "wanted here", "remove it", "missing-key", "2 faults"];
+        let needed = [
+            "unknown-pass",
+            "there is no pass `nowhere`",
+            "child.toml:2:12",
+            "named here",
+            "parent.toml:1:10",
+            "wanted here",
+            "remove it",
+            "missing-key",
+            "2 faults",
+        ];
         for needed in needed {
             assert!(text.contains(needed), "{needed} is not in\n{text}");
         }

@@ -86,7 +86,9 @@ impl Ui {
 fn listen_to_libraries(verbose: u8, color: bool) {
     let level = match verbose {
         0 => "warn",
-        1 => "warn,aquifer=info,aquifer_graph=info,aquifer_shader=info,aquifer_scene=info,aquifer_render=info,aquifer_passes=info,aquifer_lab=info",
+        1 => {
+            "warn,aquifer=info,aquifer_graph=info,aquifer_shader=info,aquifer_scene=info,aquifer_render=info,aquifer_passes=info,aquifer_lab=info"
+        }
         _ => "debug",
     };
     let filter = EnvFilter::try_from_env("AQUIFER_LOG").unwrap_or_else(|_| EnvFilter::new(level));

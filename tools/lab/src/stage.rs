@@ -1,12 +1,9 @@
-//! Shaders and kinds of passes, made to measure for a scene.
+//! Shaders and kinds of passes, with a user's folders over the built-in ones.
 
-use aquifer_render::{Registry, SceneGlobals};
-use aquifer_scene::{Features, Scene};
-use aquifer_shader::{Library, ShaderError};
-use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
-
-/// The module of sizes that come from the scene.
-const LIMITS: &str = "scene/limits";
+use aquifer_render::Registry;
+use aquifer_scene::Scene;
+use aquifer_shader::ShaderError;
+use std::path::PathBuf;
 
 /// Why the shaders cannot be made ready.
 #[derive(Debug, thiserror::Error)]
@@ -19,37 +16,27 @@ pub enum StageError {
     Render(#[from] aquifer_render::Error),
 }
 
-/// The built-in shaders with those of `folders` over them, and the built-in passes. With a finished scene they are cut to what it holds;
-/// without one (for checking and listing) they assume nothing of it.
+/// The built-in shaders with those of `folders` over them, and the built-in passes; see [`aquifer_passes::registry`].
 pub fn registry(scene: Option<&Scene>, folders: &[PathBuf]) -> Result<Registry, StageError> {
-    let mut library = Library::new();
-    for (path, text) in aquifer_shaders::modules() {
-        let origin = format!("built-in:{path}.wgsl");
-        library.insert(path, text, origin);
-    }
+    let mut library = aquifer_passes::library();
     for folder in folders {
         library.add_folder(folder)?;
     }
-    let mut features = BTreeSet::new();
-    if let Some(scene) = scene {
-        let stack = SceneGlobals::stack_depth(scene)?;
-        library.insert(LIMITS, format!("const STACK: u32 = {stack}u;\n"), "the scene's limits");
-        features.extend(Features::of(scene).names().into_iter().map(str::to_owned));
-    }
-    // No built-in pass has host code of its own yet: each is a file of `shaders/pass`.
-    Ok(Registry::new(Arc::new(library), &[], features))
+    Ok(aquifer_passes::registry(library, scene)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use aquifer_graph::Contracts as _;
+    use aquifer_passes::LIMITS;
 
     #[test]
     fn folders_add_passes_and_the_scene_sets_limits() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("pass")).unwrap();
-        let text = "@group(1) @binding(0) var<storage, read_write> out: array<f32>;\n@compute @workgroup_size(8, 8) fn main() { out[0] = 1.0; }\n";
+        let text =
+            "@group(1) @binding(0) var<storage, read_write> out: array<f32>;\n@compute @workgroup_size(8, 8) fn main() { out[0] = 1.0; }\n";
         std::fs::write(folder.path().join("pass/mine.wgsl"), text).unwrap();
         let cornell = (aquifer_scenes::by_name("cornell").unwrap().make)().finish().unwrap();
         let registry = registry(Some(&cornell), &[folder.path().to_owned()]).unwrap();

@@ -57,7 +57,7 @@ impl Checker<'_> {
                 Ok(value) => {
                     params.insert(name.to_owned(), value);
                 }
-                Err(error) => self.faults.push(Fault { help: error.help, ..Fault::at(literal.span, "", error.cause) }),
+                Err(error) => self.faults.push(Fault { help: error.help, ..Fault::at(literal.span, "", *error.cause) }),
             }
         }
         params

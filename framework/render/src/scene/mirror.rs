@@ -197,10 +197,12 @@ mod tests {
         for (module, name, ..) in layouts() {
             by_module.entry(module).or_default().push(name);
         }
-        let imports = by_module.iter().map(|(module, names)| format!("import package::{}::{{{}}};\n", module.replace('/', "::"), names.join(", ")));
-        let bindings = layouts().into_iter().enumerate().map(|(i, (_, name, ..))| {
-            format!("@group(1) @binding({i}) var<storage, read> b{i}: array<{name}>;\n")
-        });
+        let imports =
+            by_module.iter().map(|(module, names)| format!("import package::{}::{{{}}};\n", module.replace('/', "::"), names.join(", ")));
+        let bindings = layouts()
+            .into_iter()
+            .enumerate()
+            .map(|(i, (_, name, ..))| format!("@group(1) @binding({i}) var<storage, read> b{i}: array<{name}>;\n"));
         let uses = (0..layouts().len()).map(|i| format!("sum += arrayLength(&b{i});"));
         let text = format!(
             "{}{}@group(1) @binding(99) var<storage, read_write> out: u32;\n@compute @workgroup_size(1) fn main() {{ var sum = 0u; {} out = sum; }}\n",

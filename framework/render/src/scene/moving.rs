@@ -36,7 +36,11 @@ impl State {
         let list = LightList::build(scene, &still.emitters, still.environment.as_ref(), &moment, &tlas);
         let lights = light_records(&moment, &list, still);
         let arrays = [
-            Array { now: "scene/geometry::instances", before: "scene/geometry::instances_prev", bytes: bytes(&instances(&moment, &list, still)) },
+            Array {
+                now: "scene/geometry::instances",
+                before: "scene/geometry::instances_prev",
+                bytes: bytes(&instances(&moment, &list, still)),
+            },
             Array { now: "trace/bvh2::tlas", before: "trace/bvh2::tlas_prev", bytes: bytes(&upper(&tlas)) },
             Array { now: "scene/punctual::punctuals", before: "scene/punctual::punctuals_prev", bytes: bytes(&punctuals(scene, &moment)) },
             Array { now: "lights/scene::lights", before: "", bytes: bytes(&lights) },
@@ -107,7 +111,11 @@ impl Moving {
         let mut buffers = BTreeMap::new();
         for Array { now, before, bytes } in &first.arrays {
             // A hierarchy of n leaves has 2 n − 1 nodes, but squashed instances have none: leave room for them to come back.
-            let room = if now.ends_with("tlas") { first.arrays[0].bytes.len() / size_of::<mirror::Instance>() * 2 * size_of::<BvhNode>() } else { 0 };
+            let room = if now.ends_with("tlas") {
+                first.arrays[0].bytes.len() / size_of::<mirror::Instance>() * 2 * size_of::<BvhNode>()
+            } else {
+                0
+            };
             let mut contents = bytes.clone();
             contents.resize(contents.len().max(room), 0);
             buffers.insert(*now, array(context, now, &contents, wgpu::BufferUsages::STORAGE)?);
@@ -131,7 +139,10 @@ impl Moving {
     pub fn write_now(&self, context: &Context, state: &State) -> Result<(), Error> {
         if state.depth > self.depth {
             let (found, room) = (state.depth, self.depth);
-            return Err(Error::Globals(format!("at {} s the scene's upper hierarchy is {found} levels deep; the traversal stack has room for {room}", state.time)));
+            return Err(Error::Globals(format!(
+                "at {} s the scene's upper hierarchy is {found} levels deep; the traversal stack has room for {room}",
+                state.time
+            )));
         }
         state.arrays.iter().for_each(|array| self.write(context, array.now, &array.bytes));
         Ok(())

@@ -51,11 +51,21 @@ impl Still {
     fn add_geometry(&mut self, context: &Context, scene: &Scene, features: &Features) -> Result<(), Error> {
         let nodes: Vec<BvhNode> = scene.meshes.iter().flat_map(|mesh| mesh.bvh.nodes.iter().copied()).collect();
         self.add(context, "trace/bvh2::nodes", &nodes)?;
-        let all = |corner: fn(&Mesh, usize) -> mirror::Triangle| scene.meshes.iter().flat_map(move |mesh| (0..mesh.triangles.len()).map(move |t| corner(mesh, t)));
+        let all = |corner: fn(&Mesh, usize) -> mirror::Triangle| {
+            scene.meshes.iter().flat_map(move |mesh| (0..mesh.triangles.len()).map(move |t| corner(mesh, t)))
+        };
         self.add(context, "scene/geometry::triangles", &all(triangle).collect::<Vec<_>>())?;
-        let infos: Vec<_> = scene.meshes.iter().zip(&self.emitters.meshes).flat_map(|(mesh, emitters)| {
-            mesh.materials.iter().enumerate().map(|(t, &material)| mirror::TriangleInfo { material, emissive: emitters.ordinal(t as u32).unwrap_or(NONE) })
-        }).collect();
+        let infos: Vec<_> = scene
+            .meshes
+            .iter()
+            .zip(&self.emitters.meshes)
+            .flat_map(|(mesh, emitters)| {
+                mesh.materials
+                    .iter()
+                    .enumerate()
+                    .map(|(t, &material)| mirror::TriangleInfo { material, emissive: emitters.ordinal(t as u32).unwrap_or(NONE) })
+            })
+            .collect();
         self.add(context, "scene/geometry::triangle_infos", &infos)?;
         if features.textures {
             self.add(context, "scene/material::triangle_uvs", &per_triangle(scene, uvs))?;
@@ -82,14 +92,17 @@ impl Still {
         let materials: Vec<_> = scene.materials.iter().map(|material| mirror::Material::new(material, &mut index)).collect();
         self.add(context, "scene/material::materials", &materials)?;
         let mut texels: Vec<[u8; 4]> = Vec::new();
-        let firsts: Vec<u32> = scene.images.iter().map(|image| {
-            let first = texels.len() as u32;
-            texels.extend_from_slice(&image.rgba);
-            first
-        }).collect();
-        let textures: Vec<_> = uses.iter().map(|used| {
-            mirror::Texture::new(used, &scene.images[used.image as usize], firsts[used.image as usize])
-        }).collect();
+        let firsts: Vec<u32> = scene
+            .images
+            .iter()
+            .map(|image| {
+                let first = texels.len() as u32;
+                texels.extend_from_slice(&image.rgba);
+                first
+            })
+            .collect();
+        let textures: Vec<_> =
+            uses.iter().map(|used| mirror::Texture::new(used, &scene.images[used.image as usize], firsts[used.image as usize])).collect();
         self.add(context, "scene/texture::textures", &textures)?;
         self.add(context, "scene/texture::texels", &texels)
     }
@@ -98,7 +111,12 @@ impl Still {
         let m = environment.world_to_map;
         let row = |i: usize| [m.x_axis[i], m.y_axis[i], m.z_axis[i]];
         let info = mirror::EnvironmentInfo {
-            to_map_x: row(0), width: environment.width, to_map_y: row(1), height: environment.height, to_map_z: row(2), padding: 0,
+            to_map_x: row(0),
+            width: environment.width,
+            to_map_y: row(1),
+            height: environment.height,
+            to_map_z: row(2),
+            padding: 0,
         };
         let buffer = array(context, "environment_info", &[info], wgpu::BufferUsages::UNIFORM)?;
         self.buffers.insert("scene/environment::environment_info", buffer);

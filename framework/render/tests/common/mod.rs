@@ -14,8 +14,8 @@ use std::{
 const FRAME: &str = "
 struct Frame { extent: vec2<u32>, index: u32, history_valid: u32 }
 @group(0) @binding(0) var<uniform> frame: Frame;
-fn at(id: vec3<u32>) -> u32 { return select(arrayLengthless(), id.y * frame.extent.x + id.x, all(id.xy < frame.extent)); }
-fn arrayLengthless() -> u32 { return 0xffffffffu; }
+/// Beyond every array for what lies beyond the image.
+fn at(id: vec3<u32>) -> u32 { return select(0xffffffffu, id.y * frame.extent.x + id.x, all(id.xy < frame.extent)); }
 ";
 
 const PREAMBLE: &str = "import package::test::frame::{frame, at};\n";
@@ -46,7 +46,11 @@ const PASSES: &[(&str, &str, &str)] = &[
          @group(1) @binding(1) var<storage, read_write> image: array<vec4<f32>>;\n",
         "image[i] = vec4<f32>(f32(arrayLength(&absent)), absent[i], f32(arrayLength(&image)));",
     ),
-    ("gaps", "@group(1) @binding(0) var<storage, read_write> value: array<vec4<f32>>;\n", "if (i % 2u == 0u) { value[i] = vec4<f32>(7.0); }"),
+    (
+        "gaps",
+        "@group(1) @binding(0) var<storage, read_write> value: array<vec4<f32>>;\n",
+        "if (i % 2u == 0u) { value[i] = vec4<f32>(7.0); }",
+    ),
     (
         "scale",
         "struct Params {\n/// @default 2\n/// @range 0 100\ngain: f32,\n/// @default 3\noffset: u32,\n}\n\
@@ -67,11 +71,19 @@ const PASSES: &[(&str, &str, &str)] = &[
         "large[i] = 1.0; value[i] = vec4<f32>(large[i / 2u]);",
     ),
     (
+        "incomplete",
+        "override nobody_sets: f32;\n@group(1) @binding(0) var<storage, read_write> value: array<vec4<f32>>;\n",
+        "value[i] = vec4<f32>(nobody_sets);",
+    ),
+    (
         "chase",
         "struct Params {\n/// @default 1\nsteps: u32,\n}\n@group(1) @binding(0) var<uniform> params: Params;\n\
          @group(1) @binding(1) var<storage, read> value: array<vec4<f32>>;\n\
          @group(1) @binding(2) var<storage, read_write> image: array<vec4<f32>>;\n",
-        "var x = u32(value[i].x) + i; for (var n = 0u; n < params.steps; n++) { x = x * 1664525u + 1013904223u; } image[i] = vec4<f32>(f32(x));",
+        // llvmpipe ends loops after 65,535 rounds: long work needs many pixels too.
+        "var x = u32(value[i].x) + i + 1u;\n\
+         for (var n = 0u; n < params.steps; n++) { x ^= x << 13u; x ^= x >> 17u; x ^= x << 5u; }\n\
+         image[i] = vec4<f32>(f32(x));",
     ),
 ];
 

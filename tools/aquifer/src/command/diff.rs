@@ -4,7 +4,9 @@ use crate::{failure::Failure, ui::Ui};
 use aquifer_lab::{
     film::{Film, luminance},
     stats::{
-        BlockTest, Blocks, Verdict, blocks::Quantity, compare_blocks,
+        BlockTest, Blocks, Verdict,
+        blocks::Quantity,
+        compare_blocks,
         error::{SquareError, mse, rel_mse},
     },
 };
@@ -43,7 +45,8 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let (image, reference) = (Film::read(&args.image)?, Film::read(&args.reference)?);
     let (absolute, relative) = (mse(&image, &reference)?, rel_mse(&image, &reference)?);
     let blocks = |film| Blocks::of_film(film, 8, Quantity::Luminance);
-    let agreement = compare_blocks(&blocks(&image), &blocks(&reference), &BlockTest::default()).map_err(|error| Failure::Failed(error.into()))?;
+    let agreement =
+        compare_blocks(&blocks(&image), &blocks(&reference), &BlockTest::default()).map_err(|error| Failure::Failed(error.into()))?;
     let report = Report {
         mean_difference: mean(&image) / mean(&reference) - 1.0,
         mse: absolute.value(),

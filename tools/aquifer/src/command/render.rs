@@ -86,12 +86,7 @@ impl Args {
         let context = Context::new(&ContextOptions { adapter: self.adapter.clone(), ..ContextOptions::default() })?;
         let view = View { camera: self.camera.clone(), time: self.animation_time, ..View::default() };
         let globals = SceneGlobals::new(&context, scene.clone(), view)?;
-        let options = RendererOptions {
-            size: self.size,
-            seed: self.seed,
-            first_frame: self.first_frame,
-            ..RendererOptions::default()
-        };
+        let options = RendererOptions { size: self.size, seed: self.seed, first_frame: self.first_frame, ..RendererOptions::default() };
         Ok(Renderer::new(&context, registry, plan, Box::new(globals), options)?)
     }
 

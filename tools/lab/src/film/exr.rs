@@ -88,11 +88,8 @@ mod tests {
                 camera: "main".into(),
                 animation_time: 0.25,
                 transport: "full:4".into(),
-                runs: Runs::new(vec![
-                    Run { seed: u64::MAX, first_frame: 32, frames: 32 },
-                    Run { seed: 1, first_frame: 0, frames: 32 },
-                ])
-                .unwrap(),
+                runs: Runs::new(vec![Run { seed: u64::MAX, first_frame: 32, frames: 32 }, Run { seed: 1, first_frame: 0, frames: 32 }])
+                    .unwrap(),
                 adapter: "llvmpipe (LLVM 15.0.6, 256 bits)".into(),
                 version: "0.1.0".into(),
             }),

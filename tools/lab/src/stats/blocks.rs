@@ -171,10 +171,8 @@ mod tests {
 
     #[test]
     fn means_and_errors_by_hand() {
-        let film = Film {
-            variance: Some(vec![[0.04; 3], [0.12; 3], [1.0; 3]]),
-            ..Film::new([3, 1], vec![[1.0; 3], [3.0; 3], [5.0; 3]]).unwrap()
-        };
+        let film =
+            Film { variance: Some(vec![[0.04; 3], [0.12; 3], [1.0; 3]]), ..Film::new([3, 1], vec![[1.0; 3], [3.0; 3], [5.0; 3]]).unwrap() };
         for quantity in [Quantity::Luminance, Quantity::Channels] {
             let blocks = Blocks::of_film(&film, 2, quantity);
             let plane = &blocks.planes[0];

@@ -76,8 +76,7 @@ mod tests {
     #[test]
     fn the_references_noise_is_taken_out() {
         let mut rng = SplitMix::new(51);
-        let errors: Moments =
-            (0..40).map(|_| mse(&noisy(&mut rng, 0.1), &noisy(&mut rng, 0.05)).unwrap().value()).collect();
+        let errors: Moments = (0..40).map(|_| mse(&noisy(&mut rng, 0.1), &noisy(&mut rng, 0.05)).unwrap().value()).collect();
         assert!((errors.mean() - 0.01).abs() < 4.0 * errors.standard_error(), "{errors:?}");
         // The same test sees the bias of an estimate that leaves the noise in.
         assert!(0.0025 > 8.0 * errors.standard_error());

@@ -44,10 +44,7 @@ mod tests {
     #[test]
     fn the_published_sequence() {
         let mut rng = SplitMix::new(1_234_567);
-        assert_eq!(
-            [rng.bits(), rng.bits(), rng.bits()],
-            [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423]
-        );
+        assert_eq!([rng.bits(), rng.bits(), rng.bits()], [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423]);
     }
 
     #[test]

@@ -25,17 +25,16 @@ const VERSION: &str = "aquifer:version";
 type Attributes = HashMap<Text, AttributeValue>;
 
 pub(super) fn from_facts(facts: &Facts, path: &Path) -> Result<Attributes, FilmError> {
-    let samples = i32::try_from(facts.samples_per_pixel)
-        .map_err(|_| wrong(path, SAMPLES, format!("cannot hold {}", facts.samples_per_pixel)))?;
+    let samples =
+        i32::try_from(facts.samples_per_pixel).map_err(|_| wrong(path, SAMPLES, format!("cannot hold {}", facts.samples_per_pixel)))?;
     let list = |number: fn(&Run) -> u64| facts.runs.iter().map(|run| number(run).to_string()).collect::<Vec<_>>().join(" ");
-    let mut attributes: Attributes =
-        [
-            (SAMPLES, AttributeValue::I32(samples)),
-            (SECONDS, AttributeValue::F64(facts.render_seconds)),
-            (ANIMATION_TIME, AttributeValue::F32(facts.animation_time)),
-        ]
-        .map(|(name, value)| (Text::from(name), value))
-        .into();
+    let mut attributes: Attributes = [
+        (SAMPLES, AttributeValue::I32(samples)),
+        (SECONDS, AttributeValue::F64(facts.render_seconds)),
+        (ANIMATION_TIME, AttributeValue::F32(facts.animation_time)),
+    ]
+    .map(|(name, value)| (Text::from(name), value))
+    .into();
     let texts = [
         (GRAPH, facts.graph.text.clone()),
         (GRAPH_HASH, facts.graph.hash.clone()),

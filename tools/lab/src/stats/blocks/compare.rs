@@ -284,7 +284,11 @@ mod tests {
 
     #[test]
     fn holm_over_blocks() {
-        let strict = BlockTest { block_rule: Rule::Equivalent { alpha: 0.05 }, overall_rule: Rule::Equivalent { alpha: 0.05 }, ..BlockTest::default() };
+        let strict = BlockTest {
+            block_rule: Rule::Equivalent { alpha: 0.05 },
+            overall_rule: Rule::Equivalent { alpha: 0.05 },
+            ..BlockTest::default()
+        };
         assert!(verdicts(86, 0.01, &strict, |_, _| 1.0)[0] >= 198);
         assert_eq!(verdicts(87, 0.035, &strict, |_, _| 1.0)[0], 0);
         let lenient = BlockTest { block_rule: Rule::Exceeds { alpha: 0.05 }, ..BlockTest::default() };

@@ -1,0 +1,14 @@
+//! Tests on the adapter, in one binary so that pipelines and device are shared.
+
+#[path = "gpu/closed_forms.rs"]
+mod closed_forms;
+#[path = "gpu/determinism.rs"]
+mod determinism;
+#[path = "gpu/furnace.rs"]
+mod furnace;
+#[path = "gpu/sampling.rs"]
+mod sampling;
+#[path = "gpu/stage.rs"]
+mod stage;
+#[path = "gpu/traversal.rs"]
+mod traversal;
