@@ -65,11 +65,16 @@ impl<'a> Parts<'a> {
     /// # Panics
     /// When anything is wrong.
     pub fn film(&self, context: &Context, frames: u32) -> Film {
-        let (mut renderer, capture) = self.build(context);
-        for _ in 0..frames {
-            renderer.frame().unwrap_or_else(|error| panic!("{error}"));
-        }
-        capture.radiance(&mut renderer).unwrap_or_else(|error| panic!("{error}"))
+        self.rolling(context).after(frames)
+    }
+
+    /// Rendering that can go on after a look at it.
+    ///
+    /// # Panics
+    /// When anything is wrong.
+    pub fn rolling(&self, context: &Context) -> Rolling {
+        let (renderer, capture) = self.build(context);
+        Rolling { renderer, capture }
     }
 
     fn build(&self, context: &Context) -> (Renderer, Capture) {
@@ -89,6 +94,25 @@ impl<'a> Parts<'a> {
         let options = RendererOptions { size: self.size, seed: self.seed, first_frame: self.first_frame, ..RendererOptions::default() };
         let renderer = Renderer::new(context, &registry, plan, Box::new(globals), options).unwrap_or_else(|error| panic!("{error}"));
         (renderer, capture)
+    }
+}
+
+/// A renderer of a graph that accumulates.
+pub struct Rolling {
+    renderer: Renderer,
+    capture: Capture,
+}
+
+impl Rolling {
+    /// The mean with its variance, `frames` frames later.
+    ///
+    /// # Panics
+    /// When the device fails.
+    pub fn after(&mut self, frames: u32) -> Film {
+        for _ in 0..frames {
+            self.renderer.frame().unwrap_or_else(|error| panic!("{error}"));
+        }
+        self.capture.radiance(&mut self.renderer).unwrap_or_else(|error| panic!("{error}"))
     }
 }
 

@@ -18,8 +18,8 @@ pub fn paint_data(name: &str, size: [u32; 2], value: impl Fn(Vec2) -> Vec4) -> I
     Image { name: name.into(), width, height, rgba, srgb: false }
 }
 
-/// A tangent-space normal map of a height field that tiles, by differences between neighbouring texels. `slope` is the height's scale over the
-/// size of one tile; +Y of the map is up the image.
+/// A tangent-space normal map of a height field that tiles, by differences between neighbouring texels. `slope` is the height's scale over
+/// the size of one tile; +Y of the map is up the image.
 pub fn heights_to_normals(name: &str, size: [u32; 2], slope: f32, height: impl Fn(Vec2) -> f32) -> Image {
     let [width, rows] = size;
     let extent = Vec2::new(width as f32, rows as f32);

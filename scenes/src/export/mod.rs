@@ -1,8 +1,9 @@
 //! Scenes as binary glTF 2.0.
 //!
-//! The file holds what [`Scene`] holds: hierarchy, meshes with one primitive a material, materials with the KHR extensions they use, images as
-//! PNG, cameras, punctual lights, animation. Indices of materials, images, cameras, lights and nodes are kept, and those of meshes unless one
-//! is empty, which glTF does not allow and which is left out. Warnings are not written, and glTF has no place for an environment, which therefore comes beside the file, as OpenEXR.
+//! The file holds what [`Scene`] holds: hierarchy, meshes with one primitive a material, materials with the KHR extensions they use, images
+//! as PNG, cameras, punctual lights, animation. Indices of materials, images, cameras, lights and nodes are kept, and those of meshes
+//! unless one is empty, which glTF does not allow and which is left out. Warnings are not written, and glTF has no place for an
+//! environment, which therefore comes beside the file, as OpenEXR.
 
 mod animation;
 mod buffer;

@@ -88,8 +88,8 @@ fn sampler((wrap, linear): Sampler) -> Value {
     json!({ "magFilter": filter, "minFilter": filter, "wrapS": s, "wrapT": t })
 }
 
-/// Takes an affine map apart into KHR_texture_transform's scale, then turn, then offset; none if it shears. The sense of the turn is that of
-/// [`crate::build::transformed`].
+/// Takes an affine map apart into KHR_texture_transform's scale, then turn, then offset; none if it shears. The sense of the turn is that
+/// of [`crate::build::transformed`].
 fn transform(map: &Mat3) -> Option<Value> {
     let (across, down) = (map.x_axis.truncate(), map.y_axis.truncate());
     let rotation = if across == Vec2::ZERO { down.x.atan2(down.y) } else { (-across.y).atan2(across.x) };

@@ -1,5 +1,5 @@
-//! A turntable at dusk: camera, objects and lights move, and after four seconds everything is where it began. Each of glTF's interpolations is
-//! used, and motion is inherited through the hierarchy. For motion vectors, history and reprojection.
+//! A turntable at dusk: camera, objects and lights move, and after four seconds everything is where it began. Each of glTF's interpolations
+//! is used, and motion is inherited through the hierarchy. For motion vectors, history and reprojection.
 
 use crate::build::{Place, Shape, Stage, facing, glow, matte, metal, plastic};
 use aquifer_scene::{Interpolation, Scene, Track};

@@ -1,5 +1,6 @@
-//! The Cornell box (Goral et al. 1984), widened to fill a 16:9 picture: the first scene to try anything on. All surfaces are purely diffuse;
-//! reflectances are those measured at Cornell, reduced to three channels. The light hangs just below the ceiling, so that nothing coincides.
+//! The Cornell box (Goral et al. 1984), widened to fill a 16:9 picture: the first scene to try anything on. All surfaces are purely
+//! diffuse; reflectances are those measured at Cornell, reduced to three channels. The light hangs just below the ceiling, so that nothing
+//! coincides.
 
 use crate::build::{Place, Shape, Stage, glow, matte};
 use aquifer_scene::Scene;

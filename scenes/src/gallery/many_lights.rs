@@ -1,4 +1,4 @@
-//! A vaulted hall hung with 256 lanterns of 20 emissive triangles each, 5,120 in all, whose power spans more than four decades: most
+//! A vaulted hall hung with 256 lanterns of 20 emissive triangles each, 5,120 in all, whose power spans nearly four decades: most
 //! lanterns matter to hardly any pixel, and which ones matter changes across the picture. What light sampling is measured on.
 
 use crate::build::{Place, Random, Shape, Stage, glow, metal, plastic};

@@ -1,7 +1,7 @@
-//! A mountain of 1,048,352 triangles in one mesh, coloured at its vertices, in low sun under a sky: what building and walking a big hierarchy
-//! costs.
+//! A mountain of 1,048,352 triangles in one mesh, coloured at its vertices, in low sun under a sky: what building and walking a big
+//! hierarchy costs.
 
-use crate::build::{Noise, Shape, Sky, Stage, height_field, plastic, sky};
+use crate::build::{Noise, Place, Sky, Stage, height_field, plastic, sky};
 use aquifer_scene::Scene;
 use glam::{Vec2, Vec3};
 
@@ -9,19 +9,16 @@ use glam::{Vec2, Vec3};
 const CELLS: u32 = 724;
 /// Metres.
 const SIDE: f32 = 1_600.0;
-const LAKE: f32 = 36.0;
+/// Keeps crests about a cell wide, so that no face turns away from its smooth normals.
+const ROUNDING: f32 = 0.015;
 
 pub(super) fn million() -> Scene {
     let mut stage = Stage::new("million");
     stage.material(plastic("ground", [1.0; 3], 0.9));
-    let water = stage.material(plastic("water", [0.012, 0.035, 0.045], 0.12));
     let relief = Relief::new();
     let color = |position: Vec3, normal: Vec3| relief.color(position, normal);
     let mesh = stage.raw_mesh(height_field("mountain", SIDE, CELLS, |at| relief.height(at), Some(&color)));
-    stage.place(mesh, crate::build::Place::ORIGIN);
-    let mut lake = Shape::new("lake");
-    lake.quad(water, Vec3::new(-0.5 * SIDE, LAKE, 0.5 * SIDE), Vec3::X * SIDE, Vec3::NEG_Z * SIDE);
-    stage.add(lake);
+    stage.place(mesh, Place::ORIGIN);
     let to_sun = Vec3::new(-0.72, 0.34, 0.28).normalize();
     stage.sun("sun", (-to_sun).to_array(), [3.2, 2.5, 1.7]);
     let look = Sky {
@@ -54,20 +51,19 @@ impl Relief {
         let peak = (-from_peak * from_peak).exp();
         let bend = Vec2::new(self.hills.plane(at * 0.006 + 3.0, 2), self.hills.plane(at * 0.006 - 9.0, 2)) * 60.0;
         let rolling = 75.0 * self.hills.plane(at * 0.004, 5);
-        let from_lake = (at - Vec2::new(-40.0, 400.0)).length() / 150.0;
-        let basin = -66.0 * (-from_lake * from_lake).exp();
-        rolling + basin + peak * (90.0 + 330.0 * self.ridge((at + bend) * 0.0042)) + 6.0 * self.hills.plane(at * 0.06, 4)
+        rolling + peak * (90.0 + 315.0 * self.ridge((at + bend) * 0.0042)) + 6.0 * self.hills.plane(at * 0.06, 4)
     }
 
     /// Noise folded at its middle, so that it has crests; each octave counts more where the one before is high.
     fn ridge(&self, point: Vec2) -> f32 {
-        let (mut sum, mut weight, mut scale, mut point) = (0.0, 1.0, 0.5, point);
+        let (mut sum, mut weight, mut scale, mut point) = (0.0, 1.0, 0.54, point);
         for _ in 0..5 {
-            let crest = 1.0 - (2.0 * self.ridges.plane_at(point) - 1.0).abs();
+            let fold = 2.0 * self.ridges.plane_at(point) - 1.0;
+            let crest = (1.0 - (fold * fold + ROUNDING).sqrt()).max(0.0);
             let crest = crest * crest * weight;
             sum += crest * scale;
             weight = (crest * 1.6).clamp(0.0, 1.0);
-            scale *= 0.5;
+            scale *= 0.46;
             point = point * 2.03 + 17.0;
         }
         sum

@@ -1,5 +1,5 @@
-//! A valley, 400 m across: a lake, a cabin, 1,600 instanced trees and 260 rocks under a painted sky whose sun is a bright, narrow lobe of the
-//! environment map. There is no other light: the map has to be importance sampled.
+//! A valley, 400 m across: a lake, a cabin, 1,600 instanced trees and 260 rocks under a painted sky whose sun is a bright, narrow lobe of
+//! the environment map. There is no other light: the map has to be importance sampled.
 
 use crate::build::{Noise, Place, Random, Shape, Sky, Stage, height_field, plastic, sky};
 use aquifer_scene::Scene;

@@ -11,11 +11,11 @@ pub const RADIANCE: f32 = 1.0;
 /// Reflectance of the lower plate.
 pub const ALBEDO: f32 = 0.5;
 
-/// Two parallel plates of 1 m × 1 m, `distance` metres apart: the lower one, at y = 0, is diffuse; the upper one emits downward and reflects
-/// nothing, so that no light comes back.
+/// Two parallel plates of 1 m × 1 m, `distance` metres apart: the lower one, at y = 0, is diffuse; the upper one emits downward and
+/// reflects nothing, so that no light comes back.
 ///
-/// Camera "main" sees both from the side. Camera "receiver" hangs half-way between them and looks straight down; its square picture is filled
-/// by exactly the lower plate, so the mean of that picture is [`ALBEDO`] · [`RADIANCE`] · [`form_factor`]`(distance)`.
+/// Camera "main" sees both from the side. Camera "receiver" hangs half-way between them and looks straight down; its square picture is
+/// filled by exactly the lower plate, so the mean of that picture is [`ALBEDO`] · [`RADIANCE`] · [`form_factor`]`(distance)`.
 pub fn plates_at(distance: f32) -> Scene {
     let mut stage = Stage::new("plates");
     let receiver = stage.material(matte("receiver", [ALBEDO; 3]));

@@ -1,5 +1,5 @@
-//! An amphitheatre at night with 2,000 point lights on its steps, their intensity spread over three decades: no light has a surface, so light
-//! must be found by sampling the lights. Each hangs well above its step, which bounds how bright a single sample can be.
+//! An amphitheatre at night with 2,000 point lights on its steps, their intensity spread over three decades: no light has a surface, so
+//! light must be found by sampling the lights. Each hangs well above its step, which bounds how bright a single sample can be.
 
 use crate::build::{Place, Random, Shape, Stage, plastic};
 use aquifer_scene::Scene;

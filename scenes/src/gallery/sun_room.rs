@@ -1,5 +1,6 @@
-//! A living room by day, with one window: the sun (directional) falls through it, a point light shines in a floor lamp, a spot light on a picture.
-//! The three kinds of punctual light at once, with their units and falloff in plain sight. A pale panel outside stands for the sky.
+//! A living room by day, with one window: the sun (directional) falls through it, a point light shines in a floor lamp, a spot light on a
+//! picture. The three kinds of punctual light at once, with their units and falloff in plain sight. A pale panel outside stands for the
+//! sky.
 
 use crate::build::{Place, Shape, Stage, Wall, glow, matte, metal, plastic};
 use aquifer_scene::Scene;

@@ -1,5 +1,5 @@
-//! A yard whose floor lies in shadow: the sun reaches a coloured wall through a slot in the roof, and the wall lights everything else. All light
-//! on the floor is one bounce old and comes from a small bright patch, as in figure 7 of the ReSTIR GI paper (Ouyang et al. 2021).
+//! A yard whose floor lies in shadow: the sun reaches a coloured wall through a slot in the roof, and the wall lights everything else. All
+//! light on the floor is one bounce old and comes from a small bright patch, as in figure 7 of the ReSTIR GI paper (Ouyang et al. 2021).
 
 use crate::build::{Place, Shape, Stage, metal, plastic};
 use aquifer_scene::Scene;

@@ -1,6 +1,6 @@
-//! A corner of a courtyard with every use of an image that Aquifer reads: base colour, metallic-roughness, normal and emission maps, a transformed
-//! and a mirrored texture, leaves cut out by alpha, a pane of stained glass that blends, vertex colours, and a surface that is unlit. All images
-//! are painted here.
+//! A corner of a courtyard with every use of an image that Aquifer reads: base colour, metallic-roughness, normal and emission maps, a
+//! transformed and a mirrored texture, leaves cut out by alpha, a pane of stained glass that blends, vertex colours, and a surface that is
+//! unlit. All images are painted here.
 
 use crate::build::{Noise, Place, Random, Shape, Stage, glow, heights_to_normals, metal, paint, paint_data, plastic, tiled, transformed};
 use aquifer_scene::{Alpha, Image, Material, Scene, TextureRef, Wrap};

@@ -1,5 +1,5 @@
-//! Four plates of growing roughness under four spheres of light of growing size and equal power (after Veach & Guibas 1995, fig. 2): sampling
-//! lights fails at one corner, sampling the BSDF at the opposite one. Roughness stays above 0.1.
+//! Four plates of growing roughness under four spheres of light of growing size and equal power (after Veach & Guibas 1995, fig. 2):
+//! sampling lights fails at one corner, sampling the BSDF at the opposite one. Roughness stays above 0.1.
 
 use crate::build::{Place, Shape, Stage, glow, metal, plastic};
 use aquifer_scene::Scene;

@@ -93,7 +93,7 @@ fn under_a_white_sky_every_bsdf_shows_its_albedo() {
             let expected = albedo(&material, f64::from(cos_v));
             // The dielectric mix of Appendix B is not bounded by 1 (its diffuse part is weighted by v·h); a metal is.
             assert!(metallic < 1.0 || expected <= 1.0 + 1e-4, "{material:?} gives back {expected}");
-            let parts = Parts { settings: &["transport=direct"], size: [64, 64], ..Parts::new(&scene, GRAPH) };
+            let parts = Parts { settings: &["transport=direct"], size: [128, 128], ..Parts::new(&scene, GRAPH) };
             let what = format!("base {base} metallic {metallic} roughness {roughness} cos {cos_v}");
             mean_of(&parts.film(&context, 32), 1).assert_is(&what, expected, 2e-3, 5e-4);
         }

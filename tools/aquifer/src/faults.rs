@@ -10,6 +10,9 @@ pub fn render(faults: &Faults, color: bool) -> String {
     let handler = GraphicalReportHandler::new_themed(theme).with_links(false);
     let mut text = String::new();
     for fault in &faults.list {
+        if !text.is_empty() {
+            text.push('\n');
+        }
         let parts = Excerpts::of(fault, &faults.sources);
         if handler.render_report(&mut text, &parts).is_err() {
             // The handler only fails when it cannot write or a span lies outside of its text; the graph's own rendering has no such limits.

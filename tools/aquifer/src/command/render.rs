@@ -43,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: Option<u32>,
     /// Stop after so many seconds of rendering
-    #[arg(long, value_name = "SECONDS", value_parser = value::seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = value::seconds, allow_negative_numbers = true)]
     time: Option<f64>,
     /// Number of the first frame: other frames of one seed are other samples
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -73,10 +73,10 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let plan = graph.plan(&NeedsAll, &capture.keep())?;
     let mut renderer = args.renderer(&scene, &registry, plan)?;
     let spent = args.render(&mut renderer, ui)?;
-    let facts = args.facts(&graph, &scene, &renderer, spent)?;
+    let facts = args.facts(&graph, &capture, &scene, &renderer, spent)?;
     let film = Film { facts: Some(facts), ..capture.radiance(&mut renderer)? };
     args.write(&film, &capture, &mut renderer)?;
-    let summary = Summary::new(&graph, &film, &renderer, began, &args.outputs);
+    let summary = Summary::new(&graph, &film, &renderer, spent.frames, began, &args.outputs);
     ui.note(&summary.sentence());
     if args.json { ui.json(&summary) } else { Ok(()) }
 }
@@ -118,10 +118,13 @@ impl Args {
         }
     }
 
-    fn facts(&self, graph: &Graph, scene: &Scene, renderer: &Renderer, spent: State) -> Result<Facts, Failure> {
+    fn facts(&self, graph: &Graph, capture: &Capture, scene: &Scene, renderer: &Renderer, spent: State) -> Result<Facts, Failure> {
+        // Without a mean over frames, the film is that of the last one.
+        let frames = if capture.averages() { spent.frames } else { 1 };
+        let first_frame = u64::from(self.first_frame) + spent.frames - frames;
         let camera = self.camera.clone().or_else(|| scene.camera_names().into_iter().next()).unwrap_or_default();
         Ok(Facts {
-            samples_per_pixel: u32::try_from(spent.frames).unwrap_or(u32::MAX).saturating_mul(Capture::samples_per_frame(graph)),
+            samples_per_pixel: u32::try_from(frames).unwrap_or(u32::MAX).saturating_mul(Capture::samples_per_frame(graph)),
             render_seconds: spent.seconds,
             graph: GraphText { text: text_of(graph), hash: graph.digest() },
             scene: self.scene.identity()?,
@@ -129,7 +132,7 @@ impl Args {
             camera,
             animation_time: self.animation_time,
             transport: graph.transport().to_string(),
-            runs: Runs::one(self.seed, u64::from(self.first_frame), spent.frames),
+            runs: Runs::one(self.seed, first_frame, frames),
             adapter: renderer.context().adapter().name.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
         })

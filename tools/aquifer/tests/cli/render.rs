@@ -75,6 +75,19 @@ fn equal_seeds_give_equal_bits_and_parts_make_the_whole() {
 }
 
 #[test]
+fn without_a_mean_the_film_is_the_last_frame() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("a.exr");
+    aquifer(&["render", "gbuffer_view", "--size", "16x9", "--frames", "5", "-o", &out.to_string_lossy()]).succeeds();
+    let film = Film::read(&out).expect("it was written");
+    assert!(film.variance.is_none());
+    assert_eq!(film.facts.map(|facts| (facts.samples_per_pixel, facts.runs)), Some((1, aquifer_lab::film::Runs::one(0, 4, 1))));
+}
+
+#[test]
 fn failures_leave_nothing_behind() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("a.exr");
@@ -87,6 +100,18 @@ fn failures_leave_nothing_behind() {
     assert!(names(folder.path()).is_empty());
 }
 
+/// A program that does not outlive its test.
+#[cfg(unix)]
+struct Killed(std::process::Child);
+
+#[cfg(unix)]
+impl Drop for Killed {
+    fn drop(&mut self) {
+        // It has ended already when the test went well.
+        let _ = self.0.kill();
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_render_writes_what_it_has() {
@@ -95,20 +120,20 @@ fn an_interrupted_render_writes_what_it_has() {
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("a.exr");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_aquifer"))
-        .args(["render", "path_tracer", "--size", "16x9", "--transport", "direct", "--time", "500", "-o"])
+    let command = Command::new(env!("CARGO_BIN_EXE_aquifer"))
+        .args(["render", "path_tracer", "--size", "16x9", "--transport", "direct", "--time", "60", "-o"])
         .arg(&out)
         .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program was built with this test");
+        .spawn();
+    let mut child = Killed(command.expect("the program was built with this test"));
     // Listening begins with rendering; a line of progress comes every five seconds and shows that frames are done.
-    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().expect("it is piped")));
-    let progress = lines.next().expect("progress is told").expect("stderr is UTF-8");
-    assert!(progress.contains("frames/s"), "{progress}");
-    let interrupted = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is everywhere");
+    let stderr = child.0.stderr.take().expect("it is piped");
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(stderr)).map_while(Result::ok);
+    assert!(lines.any(|line| line.contains("frames/s")), "no progress was told");
+    let interrupted = Command::new("kill").args(["-INT", &child.0.id().to_string()]).status().expect("kill is everywhere");
     assert!(interrupted.success());
-    let rest: Vec<String> = lines.map_while(Result::ok).collect();
-    assert_eq!(child.wait().expect("it ends").code(), Some(0), "{rest:?}");
+    let rest: Vec<String> = lines.collect();
+    assert_eq!(child.0.wait().expect("it ends").code(), Some(0), "{rest:?}");
     assert!(rest.iter().any(|line| line.contains("interrupted")), "{rest:?}");
     assert!(Film::read(&out).expect("it was written").facts.is_some_and(|facts| facts.runs.frames() > 0));
 }

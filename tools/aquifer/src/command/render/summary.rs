@@ -19,7 +19,9 @@ pub struct Summary {
     environment: Option<String>,
     camera: String,
     size: [u32; 2],
+    /// All that were rendered.
     frames: u64,
+    /// In the film.
     samples_per_pixel: u32,
     /// Of rendering, without set-up.
     seconds: f64,
@@ -31,7 +33,7 @@ pub struct Summary {
     /// Mean over pixels of the standard error of luminance, relative to `mean_luminance`; an upper bound.
     relative_error: Option<f64>,
     passes: Timings,
-    startup: Startup,
+    startup_seconds: Setup,
     memory: MemoryReport,
     /// Of this process, where the system tells.
     peak_memory_bytes: Option<u64>,
@@ -40,9 +42,33 @@ pub struct Summary {
     outputs: Vec<PathBuf>,
 }
 
+/// Where the time before the second frame went, in seconds.
+#[derive(Debug, Serialize)]
+struct Setup {
+    /// Linking, validating and reflecting shaders.
+    compose: f64,
+    /// Making pipelines.
+    pipelines: f64,
+    /// Allocating and clearing memory.
+    memory: f64,
+    /// The first frame, with what the driver compiles late.
+    first_frame: Option<f64>,
+}
+
+impl Setup {
+    fn of(startup: Startup) -> Self {
+        Self {
+            compose: startup.compose.as_secs_f64(),
+            pipelines: startup.pipelines.as_secs_f64(),
+            memory: startup.memory.as_secs_f64(),
+            first_frame: startup.first_frame.map(|time| time.as_secs_f64()),
+        }
+    }
+}
+
 impl Summary {
     /// Collects it; `began` is when the program did.
-    pub fn new(graph: &Graph, film: &Film, renderer: &Renderer, began: Instant, outputs: &[PathBuf]) -> Self {
+    pub fn new(graph: &Graph, film: &Film, renderer: &Renderer, frames: u64, began: Instant, outputs: &[PathBuf]) -> Self {
         let facts = film.facts.clone().expect("the film of a render has its facts");
         let startup = renderer.startup();
         // Set-up is what came before rendering; the first frame is the beginning of that.
@@ -55,7 +81,7 @@ impl Summary {
             environment: facts.environment,
             camera: facts.camera,
             size: film.size,
-            frames: facts.runs.frames(),
+            frames,
             samples_per_pixel: facts.samples_per_pixel,
             seconds: facts.render_seconds,
             seconds_to_first_frame: startup.first_frame.map(|first| setup + first.as_secs_f64()),
@@ -64,7 +90,7 @@ impl Summary {
             mean_luminance: mean_luminance(film),
             relative_error: relative_error(film),
             passes: renderer.timings(),
-            startup,
+            startup_seconds: Setup::of(startup),
             memory: renderer.memory().clone(),
             peak_memory_bytes: peak_memory(),
             left_out: renderer.plan().left_out.clone(),

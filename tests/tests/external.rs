@@ -1,0 +1,85 @@
+//! External truth: images of Mitsuba 3, rendered by the scripts of `tests/external`, against the path tracer.
+//!
+//! Means agree within 0.5 %, every resolved 8×8 block within 2 %; a block is resolved when both standard errors together are at most 0.7 % of
+//! it, and 90 % of the blocks brighter than 2 % of the mean must be. Frames are added until they are; what is not resolved by the last
+//! frame fails the test, as not resolved.
+
+use aquifer_lab::{
+    film::Film,
+    stats::{BlockTest, Blocks, Verdict, blocks::Quantity, compare_blocks},
+};
+use aquifer_tests::{Parts, context, scene};
+use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+use std::path::Path;
+
+const SIZE: [u32; 2] = [64, 36];
+const GRAPH: &str = "extends = 'path_tracer.toml'\noutput = 'accumulate.image'\n[pass.tonemap]\nremove = true";
+
+/// Mean and variance of the mean, from `R G B` and `SE.R SE.G SE.B`.
+fn reference(name: &str) -> Film {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("external/references").join(name);
+    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes().from_file(&path);
+    let image = image.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let channel = |name: &str| -> Vec<f32> {
+        let list = &image.layer_data.channel_data.list;
+        let found = list.iter().find(|channel| channel.name.eq(name)).unwrap_or_else(|| panic!("no channel {name}"));
+        match &found.sample_data {
+            FlatSamples::F32(values) => values.clone(),
+            other => panic!("channel {name} holds {other:?}"),
+        }
+    };
+    let three = |names: [&str; 3]| -> Vec<[f32; 3]> {
+        let [r, g, b] = names.map(channel);
+        (0..r.len()).map(|i| [r[i], g[i], b[i]]).collect()
+    };
+    let error = three(["SE.R", "SE.G", "SE.B"]);
+    let variance = error.into_iter().map(|pixel| pixel.map(|error| error * error)).collect();
+    Film { variance: Some(variance), ..Film::new(SIZE, three(["R", "G", "B"])).expect("the reference has 64×36 pixels") }
+}
+
+/// Renders up to `most` frames, and compares.
+fn compare(name: &str, transport: &str, most: u32) {
+    let Some(context) = context() else { return };
+    let reference = Blocks::of_film(&reference(&format!("{name}-{}.exr", transport.replace(':', ""))), 8, Quantity::Channels);
+    let scene = scene(name);
+    let setting = format!("transport={transport}");
+    let parts = Parts { settings: &[&setting], ..Parts::new(&scene, GRAPH) };
+    let mut frames = 0;
+    let mut film = parts.rolling(&context);
+    loop {
+        let ours = film.after(most / 8);
+        frames += most / 8;
+        let found = compare_blocks(&Blocks::of_film(&ours, 8, Quantity::Channels), &reference, &BlockTest::default()).expect("the same grid");
+        let resolved = found.planes.iter().all(|plane| plane.share() >= found.test.resolved_share);
+        if resolved || frames >= most {
+            eprintln!("{name} {transport}, {frames} frames: {found}");
+            assert_eq!(found.verdict, Verdict::Passed, "{name} {transport} after {frames} frames: {found}");
+            return;
+        }
+    }
+}
+
+#[test]
+fn cornell_direct() {
+    compare("cornell", "direct", 8192);
+}
+
+#[test]
+fn cornell_indirect() {
+    compare("cornell", "indirect:2", 8192);
+}
+
+#[test]
+fn cornell_full() {
+    compare("cornell", "full:4", 8192);
+}
+
+#[test]
+fn glossy_direct() {
+    compare("glossy", "direct", 8192);
+}
+
+#[test]
+fn glossy_full() {
+    compare("glossy", "full:4", 8192);
+}
