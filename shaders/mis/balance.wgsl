@@ -1,0 +1,32 @@
+//! Fills slot `mis`: the generalised balance heuristic m_i(y) = c_i p̂_{←i}(y) / Σ_j c_j p̂_{←j}(y) (Lin et al. 2022, eq. 36).
+//!
+//! Unbiased, and the least noisy; O(k²) targets.
+
+import package::base::rng::{Rng, rng_next4};
+import package::restir::inputs::{Candidate, Input, MAX_INPUTS, candidate, own_target, target_from};
+import package::restir::reservoir::{Reservoir, Selection, finish, merge};
+import package::surface::{Surface};
+
+fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: u32, rng: ptr<function, Rng>) -> Reservoir {
+    var s: Selection;
+    for (var i = 0u; i < count; i++) {
+        let y = candidate(at, inputs, i);
+        var w = 0.0;
+        if (y.p_hat > 0.0) { w = share(at, y, i, inputs, count) * y.p_hat * y.weight; }
+        merge(&s, y.sample, y.p_hat, w, (*inputs)[i].reservoir.confidence, rng_next4(rng).x);
+    }
+    return finish(s);
+}
+
+/// m_i at input i's candidate y.
+fn share(at: Surface, y: Candidate, i: u32, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: u32) -> f32 {
+    let own = (*inputs)[i].reservoir.confidence * own_target(y, inputs, i);
+    var sum = own;
+    for (var j = 0u; j < count; j++) {
+        if (j == i) { continue; }
+        var there = y.p_hat;
+        if (j != 0u) { there = target_from(y.sample, at, (*inputs)[j].surface); }
+        sum += (*inputs)[j].reservoir.confidence * there;
+    }
+    return own / sum;
+}

@@ -1,0 +1,96 @@
+//! Temporal reuse: joins each pixel's reservoir with the one that last frame left where its surface was.
+//!
+//! Bitterli et al. 2020, § 4.3. The pixel of last frame is found by the motion of the surface; where it is not like this one, pixels around it are
+//! tried. Last frame's targets are evaluated in last frame's world: its camera, g-buffer, transforms, lights and hierarchy. Which history is taken
+//! depends on the g-buffer alone, and capping its confidence changes no weight: with an unbiased rule in slot `mis` the pass is unbiased.
+
+import package::base::rng::{Rng, rng_next4};
+import package::frame::frame::{BEFORE, NOW, camera_at, film_sample, frame, index_of, inside};
+import package::frame::random::{rng_for};
+import package::restir::inputs::{Input, MAX_INPUTS};
+import package::restir::neighbour::{disk, on_film, similar, similarity};
+import package::restir::reservoir::{Reservoir};
+import package::scene::geometry::{position_of};
+import package::slot::mis::{combine};
+import package::surface::{SurfaceRecord, is_surface, unpack_surface};
+
+struct Params {
+    /// Most that a history counts, in confidences of a fresh reservoir.
+    /// @default 20
+    /// @range 1 500
+    cap: f32,
+    /// Largest angle between normals of a surface and its history, degrees.
+    /// @default 25
+    /// @range 0 180
+    normal: f32,
+    /// Largest difference of camera distances, as a share.
+    /// @default 0.1
+    /// @range 0 1
+    depth: f32,
+    /// Radius around the pixel of last frame in which further pixels are tried, pixels.
+    /// @default 4
+    /// @range 0 64
+    search: f32,
+}
+
+/// Further pixels that are tried where the first is not alike.
+/// @range 0 16
+override tries: u32 = 2u;
+
+@group(1) @binding(0) var<uniform> params: Params;
+/// Surfaces of this frame.
+@group(1) @binding(1) var<storage, read> surface: array<SurfaceRecord>;
+/// Surfaces of last frame; wire it to `….surface@prev`.
+@group(1) @binding(2) var<storage, read> previous_surface: array<SurfaceRecord>;
+/// From this frame's film position to last frame's, pixels.
+@group(1) @binding(3) var<storage, read> motion: array<vec2<f32>>;
+/// Reservoirs of this frame.
+@group(1) @binding(4) var<storage, read> current: array<Reservoir>;
+/// Reservoirs of last frame.
+@group(1) @binding(5) var<storage, read> history: array<Reservoir>;
+/// Both joined.
+@group(1) @binding(6) var<storage, read_write> reservoir: array<Reservoir>;
+
+const NOWHERE: u32 = 0xffffffffu;
+
+@compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (!inside(id.xy)) { return; }
+    let at = index_of(id.xy);
+    let record = surface[at];
+    if (!is_surface(record) || frame.history_valid == 0u) {
+        reservoir[at] = current[at];
+        return;
+    }
+    var rng = rng_for(id.xy);
+    let there = pixel_before(id.xy, record, &rng);
+    if (there == NOWHERE) {
+        reservoir[at] = current[at];
+        return;
+    }
+    let s = unpack_surface(record, NOW);
+    var inputs: array<Input, MAX_INPUTS>;
+    inputs[0] = Input(current[at], s);
+    inputs[1] = Input(history[there], unpack_surface(previous_surface[there], BEFORE));
+    inputs[1].reservoir.confidence = min(inputs[1].reservoir.confidence, params.cap);
+    reservoir[at] = combine(s, &inputs, 2u, &rng);
+}
+
+/// Index of the pixel of last frame that saw this surface, or one like it.
+fn pixel_before(pixel: vec2<u32>, record: SurfaceRecord, rng: ptr<function, Rng>) -> u32 {
+    let film = film_sample(frame.camera, pixel) + motion[index_of(pixel)];
+    let jitter = vec2<f32>(frame.camera_prev.jitter_x, frame.camera_prev.jitter_y);
+    let before = position_of(record.instance, record.triangle, record.barycentrics, BEFORE);
+    let distance = length(before - camera_at(BEFORE).position);
+    let limits = similarity(params.normal, params.depth);
+    for (var i = 0u; i <= tries; i++) {
+        var offset = vec2<f32>(0.0);
+        if (i > 0u) { offset = params.search * disk(rng_next4(rng).xy); }
+        // The nearest of last frame's film samples.
+        let there = vec2<i32>(floor(film + offset - jitter + 0.5));
+        if (!on_film(there, frame.extent)) { continue; }
+        let index = index_of(vec2<u32>(there));
+        let other = previous_surface[index];
+        if (is_surface(other) && similar(record, distance, other, limits)) { return index; }
+    }
+    return NOWHERE;
+}
