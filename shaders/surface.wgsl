@@ -19,7 +19,7 @@ struct Surface {
     /// Unit, towards the viewer.
     view: vec3<f32>,
     instance: u32,
-    /// Unit shading normal, on the viewer's side.
+    /// Unit shading normal: of the viewer's side, before a normal map bent it.
     normal: vec3<f32>,
     triangle: u32,
     /// Unit normal of the triangle, on the viewer's side.
@@ -36,7 +36,7 @@ struct SurfaceRecord {
     /// `NONE` where nothing was hit.
     instance: u32,
     triangle: u32,
-    /// Packed shading normal, on the viewer's side.
+    /// Packed shading normal.
     normal: u32,
     barycentrics: vec2<f32>,
     /// Packed geometric normal, on the viewer's side.
@@ -93,26 +93,31 @@ fn surface_at(hit: Hit, view: vec3<f32>, when: u32) -> Surface {
     let position = point_to_world(instance, t.a + b.x * (t.b - t.a) + b.y * (t.c - t.a));
     let front = front_normal(instance, hit.triangle);
     let m = material_at(triangle_infos[hit.triangle].material, hit.triangle, b);
-    let n = shading_normal(hit, instance, m);
+    let n = shading_normal(hit, instance, m, view);
     let reach = abs(instance.to_world_x.xyz) + abs(instance.to_world_y.xyz) + abs(instance.to_world_z.xyz);
     let size = max3(reach) * max(max3(abs(t.a)), max(max3(abs(t.b)), max3(abs(t.c))));
-    return Surface(position, when, view, hit.instance, towards(n, view), hit.triangle, towards(front, view), size, b, bsdf_of(m));
+    return Surface(position, when, view, hit.instance, n, hit.triangle, towards(front, view), size, b, bsdf_of(m));
 }
 
 fn towards(n: vec3<f32>, view: vec3<f32>) -> vec3<f32> {
     return select(-n, n, dot(n, view) >= 0.0);
 }
 
-/// Interpolated, then bent by the normal map; unit; on the front side.
-fn shading_normal(hit: Hit, instance: Instance, m: Material) -> vec3<f32> {
+/// Interpolated, turned to the viewer's side, then bent by the normal map; unit. A bent normal may face away from the viewer: such a
+/// point reflects nothing (turning the normal back would let it shine).
+fn shading_normal(hit: Hit, instance: Instance, m: Material, view: vec3<f32>) -> vec3<f32> {
     let t = triangles[hit.triangle];
     let b = hit.barycentrics;
     let a = unpack_unit(t.na);
     let n = normalize(normal_to_world(instance, a + b.x * (unpack_unit(t.nb) - a) + b.y * (unpack_unit(t.nc) - a)));
     @if(normal_maps) {
-        if (m.normal_texture != NONE) { return normal_mapped(hit, instance, m, n); }
+        if (m.normal_texture != NONE) {
+            let bent = normal_mapped(hit, instance, m, n);
+            // Seen from behind, the map is the front's, mirrored in the surface.
+            return select(bent - 2.0 * dot(bent, n) * n, bent, dot(n, view) >= 0.0);
+        }
     }
-    return n;
+    return towards(n, view);
 }
 
 /// Tangents with handedness, of a triangle's corners.

@@ -1,4 +1,4 @@
-//! Fills slot `mis`: the generalised balance heuristic m_i(y) = c_i p̂_{←i}(y) / Σ_j c_j p̂_{←j}(y) (Lin et al. 2022, eq. 36).
+//! Fills slot `mis`: the generalised balance heuristic m_i(y) = c_i p̂_{←i}(y) / Σ_j c_j p̂_{←j}(y) (Lin et al. 2022).
 //!
 //! Unbiased, and the least noisy; O(k²) targets.
 

@@ -1,6 +1,6 @@
 //! Spatial reuse: joins each pixel's reservoir with those of pixels around it.
 //!
-//! Bitterli et al. 2020, § 4.2. Pixels are drawn uniformly in a disk, and rejected by the g-buffer alone. Rounds are `repeat`, with
+//! Bitterli et al. 2020, § 3.2 and § 5. Pixels are drawn uniformly in a disk, and rejected by the g-buffer alone. Rounds are `repeat`, with
 //! `feed.current = "reservoir"`. With an unbiased rule in slot `mis` the pass is unbiased.
 
 import package::base::rng::{rng_next4};

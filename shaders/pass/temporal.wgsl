@@ -1,6 +1,6 @@
 //! Temporal reuse: joins each pixel's reservoir with the one that last frame left where its surface was.
 //!
-//! Bitterli et al. 2020, § 4.3. The pixel of last frame is found by the motion of the surface; where it is not like this one, pixels around it are
+//! Bitterli et al. 2020, § 3.2 and § 5. The pixel of last frame is found by the motion of the surface; where it is not like this one, pixels around it are
 //! tried. Last frame's targets are evaluated in last frame's world: its camera, g-buffer, transforms, lights and hierarchy. Which history is taken
 //! depends on the g-buffer alone, and capping its confidence changes no weight: with an unbiased rule in slot `mis` the pass is unbiased.
 

@@ -1,7 +1,7 @@
 //! What a combination rule works on: reservoirs with the surfaces they were made for, and targets carried between them.
 //!
 //! The target of input i, carried to the receiver by its shift T_i: p̂_{←i}(y) = p̂_i(T_i⁻¹ y) |∂T_i⁻¹/∂y|, and 0 where y is not an image of T_i
-//! (Lin et al. 2022, § 5.3). It holds visibility exactly where the reservoirs were made with it (slot `visibility`): at every y that counts, the
+//! (Lin et al. 2022). It holds visibility exactly where the reservoirs were made with it (slot `visibility`): at every y that counts, the
 //! shares of those inputs that can really have produced y must sum to 1.
 
 import package::restir::reservoir::{Reservoir};

@@ -4,7 +4,7 @@ import package::base::math::{PI};
 import package::base::pack::{unpack_unit};
 import package::surface::{SurfaceRecord};
 
-/// Similarity of two surfaces (Bitterli et al. 2020, § 4.4: 25° and 10 %).
+/// Similarity of two surfaces (Bitterli et al. 2020, § 5: 25° and 10 %).
 struct Similarity {
     /// Least cosine between shading normals.
     cosine: f32,

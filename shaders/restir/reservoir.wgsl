@@ -2,7 +2,7 @@
 //!
 //! Resampled importance sampling: candidates X_i with contribution weights W_i (estimates of 1 / p(X_i)) get the resampling weights
 //! w_i = m_i(X_i) p̂(X_i) W_i, and one is kept with probability w_i / Σw. Its own contribution weight is then W = Σw / p̂(Y), and f(Y) W
-//! estimates ∫ f without bias wherever Σ m_i = 1 on f's support (Bitterli et al. 2020, § 3; Lin et al. 2022, § 5).
+//! estimates ∫ f without bias wherever Σ m_i = 1 on f's support (Bitterli et al. 2020, § 3.1; Lin et al. 2022).
 
 import package::base::math::{is_finite};
 import package::slot::domain::{Sample};
