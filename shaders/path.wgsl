@@ -23,6 +23,9 @@ override transport_max: u32 = 5u;
 /// @range 1 64
 override roulette_after: u32 = 3u;
 
+/// Rays that this invocation has traced.
+var<private> rays_traced: u32;
+
 /// Share of technique a against b.
 fn power_heuristic(a: f32, b: f32) -> f32 {
     // By ratio: squares of densities near a mirror overflow.
@@ -38,6 +41,7 @@ fn next_event(s: Surface, rng: ptr<function, Rng>) -> vec3<f32> {
     let arrival = arrive(p, s.position);
     let value = scatter(s, arrival.direction) * arrival.value * c.weight;
     if (max3(value) <= 0.0) { return vec3<f32>(0.0); }
+    rays_traced += 1u;
     if (occluded(shadow_ray(leave(s.position, s.geometric, arrival.direction, s.size), p), s.when)) { return vec3<f32>(0.0); }
     if (arrival.jacobian == 0.0) { return value; }
     let by_light = proposal_pdf(c.light, s.position) / arrival.jacobian;
@@ -81,6 +85,7 @@ fn walk(start: Surface, rng: ptr<function, Rng>) -> vec3<f32> {
         if (drawn.pdf <= 0.0 || max3(drawn.value) <= 0.0) { break; }
         throughput *= drawn.value / drawn.pdf;
         let ray = ray_from(s, drawn.direction);
+        rays_traced += 1u;
         let hit = closest(ray, s.when);
         if (counts) { radiance += throughput * met(hit, ray, drawn.pdf, s); }
         if (hit.instance == NONE || k == transport_max) { break; }

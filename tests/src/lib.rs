@@ -166,6 +166,9 @@ impl Estimate {
     pub fn assert_is(&self, what: &str, expected: f64, resolution: f64, rounding: f64) {
         let Estimate { value, standard_error } = *self;
         assert!(standard_error <= resolution * expected, "{what}: the test resolves only {standard_error} of {expected}");
-        assert!((value - expected).abs() <= 4.0 * standard_error + rounding * expected, "{what}: {value} ± {standard_error}, not {expected}");
+        assert!(
+            (value - expected).abs() <= 4.0 * standard_error + rounding * expected,
+            "{what}: {value} ± {standard_error}, not {expected}"
+        );
     }
 }

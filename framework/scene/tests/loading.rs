@@ -203,7 +203,8 @@ fn faults_name_their_json_pointer() {
         change(&mut file);
         error(&file)
     };
-    let cases: &[(&dyn Fn(&mut File), &str)] = &[
+    type Edit<'a> = &'a dyn Fn(&mut File);
+    let cases: &[(Edit<'_>, &str)] = &[
         (&|f| f.json["bufferViews"][0]["byteLength"] = json!(9_999_999), "/bufferViews/0: reaches byte 9999999 of "),
         (&|f| f.json["accessors"][0]["count"] = json!(5), "/accessors/0: reaches byte 60 of 48"),
         (&|f| f.json["accessors"][1]["count"] = json!(3), "/meshes/0/primitives/0/attributes/NORMAL: 3 elements for 4 vertices"),

@@ -186,7 +186,8 @@ fn refused_with_a_reason() {
     let png = common::png(8, 4);
     let mut bomb = png.clone();
     bomb[16..24].copy_from_slice(&[0x7f, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff]);
-    let cases: Vec<(&str, Box<dyn Fn(&mut File)>)> = vec![
+    type Edit = Box<dyn Fn(&mut File)>;
+    let cases: Vec<(&str, Edit)> = vec![
         ("a node that is its own child", Box::new(|f| f.json["nodes"][0]["children"] = json!([0]))),
         ("two nodes that are each other's parent", Box::new(|f| f.json["nodes"][0]["children"] = json!([2]))),
         ("a root twice", Box::new(|f| f.json["scenes"][0]["nodes"] = json!([2, 2]))),

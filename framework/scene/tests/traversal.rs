@@ -1,7 +1,7 @@
 //! The two-level hierarchy against every triangle tried in turn, in double precision.
 
 use aquifer_scene::{CpuTracer, Hit, Material, Mesh, Moment, Node, Scene, Tlas};
-use glam::{DVec3, Quat, Vec3, vec3};
+use glam::{Quat, Vec3, vec3};
 
 /// SplitMix64.
 struct Numbers(u64);
@@ -61,7 +61,7 @@ fn brute_force(scene: &Scene, moment: &Moment, origin: Vec3, direction: Vec3) ->
         let mesh = &scene.meshes[instance.mesh as usize];
         let transform = glam::DAffine3::from_mat3_translation(
             glam::DMat3::from_cols_array(&instance.transform.matrix3.to_cols_array().map(f64::from)),
-            DVec3::from(instance.transform.translation.as_dvec3()),
+            instance.transform.translation.as_dvec3(),
         );
         for triangle in 0..mesh.triangles.len() {
             let [a, b, c] = mesh.corners(triangle).map(|corner| transform.transform_point3(corner.as_dvec3()));

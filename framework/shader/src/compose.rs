@@ -57,11 +57,8 @@ impl Library {
     fn link(&self, what: &Specialisation) -> Result<(String, Vec<String>), ShaderError> {
         let linker = Linker { library: self, slots: &what.slots, entry: &what.entry, fault: RefCell::new(None) };
         let flags = what.features.iter().map(|name| (name.clone(), Feature::Enable)).collect();
-        let options = CompileOptions {
-            validate: false,
-            features: Features { default: Feature::Disable, flags },
-            ..CompileOptions::default()
-        };
+        let options =
+            CompileOptions { validate: false, features: Features { default: Feature::Disable, flags }, ..CompileOptions::default() };
         let result = wesl::compile_sourcemap(&module_path(&what.entry), &linker, &Names, &options);
         match (linker.fault.into_inner(), result) {
             (Some(fault), _) => Err(fault),

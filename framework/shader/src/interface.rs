@@ -172,8 +172,7 @@ impl Layout {
         if self.members.is_empty() {
             return self.name.clone();
         }
-        let members: Vec<String> =
-            self.members.iter().map(|m| format!("{}@{}:{}", m.name, m.offset, m.ty.canonical())).collect();
+        let members: Vec<String> = self.members.iter().map(|m| format!("{}@{}:{}", m.name, m.offset, m.ty.canonical())).collect();
         format!("{}{{{}}}/{}", self.name, members.join(","), self.size)
     }
 }

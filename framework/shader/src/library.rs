@@ -83,7 +83,9 @@ impl Library {
             text.lines().any(|line| line.trim_end() == "//! @default")
         };
         let slots = self.slots().into_iter();
-        slots.filter_map(|(slot, fillings)| Some((slot.clone(), fillings.into_iter().find(|filling| is_default(&slot, filling))?))).collect()
+        slots
+            .filter_map(|(slot, fillings)| Some((slot.clone(), fillings.into_iter().find(|filling| is_default(&slot, filling))?)))
+            .collect()
     }
 
     pub(crate) fn module(&self, path: &str) -> Result<&Module, ShaderError> {

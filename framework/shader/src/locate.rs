@@ -34,7 +34,7 @@ pub fn invalid(library: &Library, text: &str, error: &naga::WithSpan<naga::valid
 fn declaration(text: &str) -> (Option<String>, Option<String>) {
     const WORDS: [&str; 5] = ["fn ", "struct ", "override ", "const ", "alias "];
     for line in text.lines().rev() {
-        let line = line.trim_start_matches(|c| c == '@');
+        let line = line.trim_start_matches('@');
         let at = WORDS.iter().filter_map(|word| line.find(word).map(|at| at + word.len())).min();
         let Some(at) = at.filter(|_| !line.starts_with(' ')) else { continue };
         let name: String = line[at..].chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();

@@ -1,7 +1,7 @@
 //! From a naga module to an [`Interface`].
 
 use crate::{
-    Binding, BiasNote, Entry, Interface, Layout, Library, Member, Override, ResourceKind, Scalar, ShaderError, Specialisation, Stage,
+    BiasNote, Binding, Entry, Interface, Layout, Library, Member, Override, ResourceKind, Scalar, ShaderError, Specialisation, Stage,
     comments::Comments, compose::unmangle, slots,
 };
 use naga::{AddressSpace, Handle, ScalarKind, StorageAccess, TypeInner, common::wgsl::TypeContext, proc::Layouter, valid::GlobalUse};
@@ -77,7 +77,8 @@ impl Reader<'_> {
             }
             let (module, name) = self.origin(variable.name.as_deref().unwrap_or_default());
             let doc = self.doc(&module, &name);
-            let resource = self.resource(variable).map_err(|why| ShaderError::Unbindable { module: module.clone(), name: name.clone(), why })?;
+            let resource =
+                self.resource(variable).map_err(|why| ShaderError::Unbindable { module: module.clone(), name: name.clone(), why })?;
             let binding = Binding {
                 group: place.group,
                 binding: place.binding,
@@ -156,7 +157,9 @@ impl Reader<'_> {
     fn people_name(&self, module: &str, name: String, members: &[Member]) -> String {
         let own = self.what.slots.iter().find(|(slot, filling)| slots::module_of(slot, filling) == *module);
         let held = || {
-            members.iter().find_map(|member| Some(member.ty.name.split_once('<')?.1.strip_suffix('>')?.to_owned()).filter(|_| !member.ty.members.is_empty()))
+            members.iter().find_map(|member| {
+                Some(member.ty.name.split_once('<')?.1.strip_suffix('>')?.to_owned()).filter(|_| !member.ty.members.is_empty())
+            })
         };
         match own.map(|(_, filling)| filling.clone()).or_else(held) {
             Some(filling) => format!("{name}<{filling}>"),

@@ -17,7 +17,8 @@ fn check(name: &str, scene: &Arc<Scene>, size: [u32; 2], frames: u32, expected: 
 /// Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11, for equal squares of side x at unit distance.
 fn squares(x: f64) -> f64 {
     let root = (1.0 + x * x).sqrt();
-    2.0 / (std::f64::consts::PI * x * x) * ((root * root / (1.0 + 2.0 * x * x).sqrt()).ln() + 2.0 * x * root * (x / root).atan() - 2.0 * x * x.atan())
+    2.0 / (std::f64::consts::PI * x * x)
+        * ((root * root / (1.0 + 2.0 * x * x).sqrt()).ln() + 2.0 * x * root * (x / root).atan() - 2.0 * x * x.atan())
 }
 
 #[test]
@@ -39,7 +40,12 @@ fn parallel_plates_exchange_their_form_factor() {
 fn a_disk_lights_the_point_below_it() {
     let (radius, height) = (0.7_f32, 1.3_f32);
     let corners = 1024_u16;
-    let ring: Vec<Vec3> = (0..corners).map(|i| { let phi = TAU * f32::from(i) / f32::from(corners); Vec3::new(radius * phi.cos(), height, radius * phi.sin()) }).collect();
+    let ring: Vec<Vec3> = (0..corners)
+        .map(|i| {
+            let phi = TAU * f32::from(i) / f32::from(corners);
+            Vec3::new(radius * phi.cos(), height, radius * phi.sin())
+        })
+        .collect();
     let mut stage = Stage::default();
     let (white, lamp) = (stage.diffuse(0.8, 0.0), stage.diffuse(0.0, 3.0));
     stage.square(Vec3::ZERO, Vec3::Y, 0.1, white);

@@ -40,7 +40,8 @@ fn a_pass_more_does_not_change_the_numbers_of_the_others() {
 fn halves_make_the_whole() {
     let Some(context) = context() else { return };
     let scene = scene("cornell");
-    let render = |first_frame, frames| image(&mut Parts { first_frame, size: [32, 18], ..Parts::new(&scene, GRAPH) }.renderer(&context), frames);
+    let render =
+        |first_frame, frames| image(&mut Parts { first_frame, size: [32, 18], ..Parts::new(&scene, GRAPH) }.renderer(&context), frames);
     let (whole, first, second) = (render(0, 64), render(0, 32), render(32, 32));
     for ((whole, first), second) in whole.iter().zip(&first).zip(&second) {
         for channel in 0..3 {

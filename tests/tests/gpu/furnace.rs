@@ -81,7 +81,9 @@ fn albedo(m: &Material, cos_v: f64) -> f64 {
 #[test]
 fn under_a_white_sky_every_bsdf_shows_its_albedo() {
     let Some(context) = context() else { return };
-    for (base, metallic, roughness) in [(1.0, 0.0, 1.0), (0.8, 0.0, 0.4), (1.0, 1.0, 0.15), (1.0, 1.0, 0.6), (0.5, 0.5, 0.3), (1.0, 1.0, 1.0)] {
+    for (base, metallic, roughness) in
+        [(1.0, 0.0, 1.0), (0.8, 0.0, 0.4), (1.0, 1.0, 0.15), (1.0, 1.0, 0.6), (0.5, 0.5, 0.3), (1.0, 1.0, 1.0)]
+    {
         let material = Material { base_color: Vec4::new(base, base, base, 1.0), metallic, roughness, ..Material::default() };
         for cos_v in [0.95_f32, 0.3] {
             let mut stage = Stage::default();

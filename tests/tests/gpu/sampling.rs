@@ -122,8 +122,12 @@ fn samplers() -> Vec<(String, String, &'static str)> {
             "outdoor",
         ),
     ];
-    for (base, metallic, alpha, cos) in [(0.8, 0.0, 0.25, 0.9), (0.5, 0.0, 0.04, 0.5), (0.9, 1.0, 0.16, 0.7), (0.9, 1.0, 1.0, 0.2), (0.6, 0.5, 0.5, 0.1)] {
-        let define = format!("const BASE: f32 = {base:?};\nconst METALLIC: f32 = {metallic:?};\nconst ALPHA: f32 = {alpha:?};\nconst COS: f32 = {cos:?};\n");
+    for (base, metallic, alpha, cos) in
+        [(0.8, 0.0, 0.25, 0.9), (0.5, 0.0, 0.04, 0.5), (0.9, 1.0, 0.16, 0.7), (0.9, 1.0, 1.0, 0.2), (0.6, 0.5, 0.5, 0.1)]
+    {
+        let define = format!(
+            "const BASE: f32 = {base:?};\nconst METALLIC: f32 = {metallic:?};\nconst ALPHA: f32 = {alpha:?};\nconst COS: f32 = {cos:?};\n"
+        );
         // Imports come first.
         let text = BSDF.replacen("fn it()", &format!("{define}fn it()"), 1);
         all.push((format!("bsdf metallic {metallic} alpha {alpha} cos {cos}"), text, "cornell"));

@@ -69,4 +69,3 @@ impl Stage {
         Arc::new(self.0.finish().expect("a scene written by hand is valid"))
     }
 }
-

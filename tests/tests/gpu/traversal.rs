@@ -62,11 +62,14 @@ fn shaders_and_obvhs_hit_the_same_triangles() {
         let bounds = tlas.bounds().unwrap();
         let settings: Vec<String> = [("low", bounds.min), ("high", bounds.max)]
             .iter()
-            .flat_map(|(end, corner)| ["x", "y", "z"].iter().enumerate().map(move |(i, axis)| format!("test_trace.{end}_{axis}={:?}", corner[i])))
+            .flat_map(|(end, corner)| {
+                ["x", "y", "z"].iter().enumerate().map(move |(i, axis)| format!("test_trace.{end}_{axis}={:?}", corner[i]))
+            })
             .collect();
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
         let graph = "transport = 'emission'\noutput = 'test_trace.traced'\n[pass.test_trace]";
-        let mut renderer = Parts { shaders: &[("pass/test_trace", KERNEL)], settings: &settings, ..Parts::new(&scene, graph) }.renderer(&context);
+        let mut renderer =
+            Parts { shaders: &[("pass/test_trace", KERNEL)], settings: &settings, ..Parts::new(&scene, graph) }.renderer(&context);
         renderer.frame().unwrap();
         let words = renderer.read_f32("test_trace.traced").unwrap();
         assert_eq!(words.len(), RAYS * 12);
@@ -76,7 +79,8 @@ fn shaders_and_obvhs_hit_the_same_triangles() {
 }
 
 fn compare(name: &str, words: &[f32], tracer: &CpuTracer, scene: &aquifer_scene::Scene, moment: &aquifer_scene::Moment) {
-    let firsts: Vec<u32> = scene.meshes.iter().scan(0, |next, mesh| Some(std::mem::replace(next, *next + mesh.triangles.len() as u32))).collect();
+    let firsts: Vec<u32> =
+        scene.meshes.iter().scan(0, |next, mesh| Some(std::mem::replace(next, *next + mesh.triangles.len() as u32))).collect();
     let (mut hits, mut ties, mut edges, mut shadows) = (0_usize, 0_usize, 0_usize, 0_usize);
     for ray in words.chunks_exact(12) {
         let (origin, direction) = (Vec3::from_slice(&ray[0..3]), Vec3::from_slice(&ray[4..7]));
@@ -93,27 +97,39 @@ fn compare(name: &str, words: &[f32], tracer: &CpuTracer, scene: &aquifer_scene:
                 if (cpu.instance, cpu.triangle) != (instance, triangle) {
                     // The same distance on another triangle: an edge that both share, or two that coincide. The shader's must be met there too.
                     let there = distance_to(scene, &moment.instances[instance as usize], triangle, origin, direction);
-                    assert!(there.is_some_and(|there| (there - f64::from(t)).abs() <= 1e-4 * there.max(1.0)), "{name}: {cpu:?} and {gpu:?}, {there:?}");
+                    assert!(
+                        there.is_some_and(|there| (there - f64::from(t)).abs() <= 1e-4 * there.max(1.0)),
+                        "{name}: {cpu:?} and {gpu:?}, {there:?}"
+                    );
                     ties += 1;
                 }
             }
             // One of the two slipped past an edge: its own hit, or the nearer one of the other, lies on one.
             (cpu, gpu) => {
                 let near = |u: f32, v: f32| u.min(v).min(1.0 - u - v) < 1e-3;
-                let at_edge = cpu.is_some_and(|hit| near(hit.barycentrics[0], hit.barycentrics[1])) || (gpu.is_some() && near(ray[9], ray[10]));
+                let at_edge =
+                    cpu.is_some_and(|hit| near(hit.barycentrics[0], hit.barycentrics[1])) || (gpu.is_some() && near(ray[9], ray[10]));
                 assert!(at_edge, "{name}: {cpu:?} and {gpu:?} from {origin} along {direction}");
                 edges += 1;
             }
         }
     }
-    eprintln!("{name}: {hits} hits, {ties} of them as near as another, {edges} past an edge, {shadows} shadow rays that disagree with the nearest hit");
+    eprintln!(
+        "{name}: {hits} hits, {ties} of them as near as another, {edges} past an edge, {shadows} shadow rays that disagree with the nearest hit"
+    );
     assert!(hits > RAYS / 10, "{name}: too few hits to tell anything: {hits}");
     assert!(edges <= RAYS / 10_000, "{name}: {edges} rays slip past an edge");
     assert!(shadows <= RAYS / 10_000, "{name}: {shadows}");
 }
 
 /// Where the ray meets the plane of a triangle within a margin of its edges, in f64 (Möller and Trumbore 1997).
-fn distance_to(scene: &aquifer_scene::Scene, instance: &aquifer_scene::Instance, triangle: u32, origin: Vec3, direction: Vec3) -> Option<f64> {
+fn distance_to(
+    scene: &aquifer_scene::Scene,
+    instance: &aquifer_scene::Instance,
+    triangle: u32,
+    origin: Vec3,
+    direction: Vec3,
+) -> Option<f64> {
     let mesh = &scene.meshes[instance.mesh as usize];
     let [a, b, c] = mesh.corners(triangle as usize).map(|corner| instance.transform.transform_point3(corner).as_dvec3());
     let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());

@@ -6,5 +6,6 @@
 pub mod atomic;
 pub mod capture;
 pub mod film;
+pub mod rays;
 pub mod stage;
 pub mod stats;

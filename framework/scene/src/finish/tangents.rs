@@ -84,7 +84,7 @@ fn split(mesh: &mut Mesh, faces: &[Face], tangents: &[[Option<Vec4>; 3]]) {
     for (face, corners) in faces.iter().zip(tangents) {
         for (corner, tangent) in corners.iter().enumerate() {
             let vertex = mesh.triangles[face.triangle][corner];
-            let tangent = tangent.and_then(|found| usable(found)).unwrap_or_else(|| any_tangent(mesh.normals[vertex as usize]));
+            let tangent = tangent.and_then(usable).unwrap_or_else(|| any_tangent(mesh.normals[vertex as usize]));
             let key = (vertex, tangent.to_array().map(f32::to_bits));
             let own = *copies.entry(key).or_insert_with(|| match of_vertex[vertex as usize] {
                 None => vertex,

@@ -15,6 +15,7 @@ use aquifer_lab::{
     atomic,
     capture::Capture,
     film::{Facts, Film, Format, GraphText, Runs},
+    rays::RayCounters,
 };
 use aquifer_render::{Context, ContextOptions, Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::Scene;
@@ -70,13 +71,16 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let scene = Arc::new(args.scene.load(ui)?);
     let (graph, registry) = args.graph.check(Some(&scene))?;
     let capture = Capture::of(&graph);
-    let plan = graph.plan(&NeedsAll, &capture.keep())?;
+    let rays = RayCounters::of(&graph);
+    let keep: Vec<&str> = capture.keep().into_iter().chain(rays.keep()).collect();
+    let plan = graph.plan(&NeedsAll, &keep)?;
     let mut renderer = args.renderer(&scene, &registry, plan)?;
     let spent = args.render(&mut renderer, ui)?;
     let facts = args.facts(&graph, &capture, &scene, &renderer, spent)?;
     let film = Film { facts: Some(facts), ..capture.radiance(&mut renderer)? };
     args.write(&film, &capture, &mut renderer)?;
-    let summary = Summary::new(&graph, &film, &renderer, spent.frames, began, &args.outputs);
+    let rays = rays.read(&mut renderer)?;
+    let summary = Summary::new(&graph, &film, &renderer, rays, spent.frames, began, &args.outputs);
     ui.note(&summary.sentence());
     if args.json { ui.json(&summary) } else { Ok(()) }
 }

@@ -1,7 +1,10 @@
 //! What a render did, in a sentence and in numbers.
 
 use aquifer_graph::{Graph, LeftOut};
-use aquifer_lab::film::{Film, luminance};
+use aquifer_lab::{
+    film::{Film, luminance},
+    rays::PassRays,
+};
 use aquifer_render::{MemoryReport, Renderer, Startup, Timings};
 use serde::Serialize;
 use std::{
@@ -33,6 +36,8 @@ pub struct Summary {
     /// Mean over pixels of the standard error of luminance, relative to `mean_luminance`; an upper bound.
     relative_error: Option<f64>,
     passes: Timings,
+    /// Of the last frame, where passes count them.
+    rays: Vec<PassRays>,
     startup_seconds: Setup,
     memory: MemoryReport,
     /// Of this process, where the system tells.
@@ -68,7 +73,15 @@ impl Setup {
 
 impl Summary {
     /// Collects it; `began` is when the program did.
-    pub fn new(graph: &Graph, film: &Film, renderer: &Renderer, frames: u64, began: Instant, outputs: &[PathBuf]) -> Self {
+    pub fn new(
+        graph: &Graph,
+        film: &Film,
+        renderer: &Renderer,
+        rays: Vec<PassRays>,
+        frames: u64,
+        began: Instant,
+        outputs: &[PathBuf],
+    ) -> Self {
         let facts = film.facts.clone().expect("the film of a render has its facts");
         let startup = renderer.startup();
         // Set-up is what came before rendering; the first frame is the beginning of that.
@@ -90,6 +103,7 @@ impl Summary {
             mean_luminance: mean_luminance(film),
             relative_error: relative_error(film),
             passes: renderer.timings(),
+            rays,
             startup_seconds: Setup::of(startup),
             memory: renderer.memory().clone(),
             peak_memory_bytes: peak_memory(),
