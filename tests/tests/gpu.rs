@@ -6,6 +6,8 @@ mod closed_forms;
 mod determinism;
 #[path = "gpu/furnace.rs"]
 mod furnace;
+#[path = "gpu/moving.rs"]
+mod moving;
 #[path = "gpu/sampling.rs"]
 mod sampling;
 #[path = "gpu/stage.rs"]

@@ -1,6 +1,6 @@
 //! `aquifer render`: needs an adapter, and skips (or, with AQUIFER_REQUIRE_ADAPTER=1, fails) without one.
 
-use crate::run::{Run, aquifer, names};
+use crate::run::{Run, aquifer, aquifer_with, names};
 use aquifer_lab::film::Film;
 use std::{
     path::Path,
@@ -97,6 +97,13 @@ fn failures_leave_nothing_behind() {
     render(&out, &["--set", "path_tracer.bounces=3"]).fails(1, "unknown-param");
     render(&out, &["--adapter", "no such adapter"]).fails(1, "adapter");
     render(&out, &["--environment", "gone.hdr"]).fails(1, "gone.hdr");
+    let arguments = ["render", "path_tracer", "-o", &out.to_string_lossy()];
+    aquifer_with(("VK_DRIVER_FILES", "/nowhere.json"), &arguments).fails(1, "no GPU adapter found");
+    if adapter() {
+        // A g-buffer of 25 GB: no adapter binds that.
+        let large = ["render", "path_tracer", "--size", "20000x20000", "-o", &out.to_string_lossy()];
+        aquifer(&large).fails(1, "bytes, but the adapter offers");
+    }
     assert!(names(folder.path()).is_empty());
 }
 
