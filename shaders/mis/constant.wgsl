@@ -12,8 +12,8 @@ fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: 
     let total = total_confidence(inputs, count);
     var s: Selection;
     for (var i = 0u; i < count; i++) {
-        let y = candidate(at, inputs, i);
-        let c = (*inputs)[i].reservoir.confidence;
+        let y = candidate(at, (*inputs)[i], i == 0u);
+        let c = (*inputs)[i].confidence;
         merge(&s, y.sample, y.p_hat, c / total * y.p_hat * y.weight, c, rng_next4(rng).x);
     }
     return finish(s);

@@ -6,7 +6,7 @@
 //! @default
 
 import package::base::rng::{Rng, rng_next4};
-import package::restir::inputs::{Input, MAX_INPUTS, candidate, target_from};
+import package::restir::inputs::{Input, MAX_INPUTS, candidate, surface_of_input, target_from};
 import package::restir::reservoir::{Reservoir, Selection, finish, merge};
 import package::surface::{Surface};
 
@@ -14,15 +14,15 @@ fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: 
     var s: Selection;
     var chosen = 0u;
     for (var i = 0u; i < count; i++) {
-        let y = candidate(at, inputs, i);
-        let c = (*inputs)[i].reservoir.confidence;
+        let y = candidate(at, (*inputs)[i], i == 0u);
+        let c = (*inputs)[i].confidence;
         if (merge(&s, y.sample, y.p_hat, c * y.p_hat * y.weight, c, rng_next4(rng).x)) { chosen = i; }
     }
     if (s.sum <= 0.0) { return finish(s); }
     // The canonical can make all that the receiver's target is positive at; the input that made the sample can make it.
     var z = 0.0;
     for (var j = 0u; j < count; j++) {
-        if (j == 0u || j == chosen || target_from(s.sample, at, (*inputs)[j].surface) > 0.0) { z += (*inputs)[j].reservoir.confidence; }
+        if (j == 0u || j == chosen || target_from(s.sample, at, surface_of_input((*inputs)[j])) > 0.0) { z += (*inputs)[j].confidence; }
     }
     s.sum /= z;
     return finish(s);

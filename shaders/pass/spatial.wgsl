@@ -3,10 +3,11 @@
 //! Bitterli et al. 2020, § 3.2 and § 5. Pixels are drawn uniformly in a disk, and rejected by the g-buffer alone. Rounds are `repeat`, with
 //! `feed.current = "reservoir"`. With an unbiased rule in slot `mis` the pass is unbiased.
 
+import package::base::math::{HUGE};
 import package::base::rng::{rng_next4};
 import package::frame::frame::{NOW, frame, index_of, inside};
 import package::frame::random::{rng_for};
-import package::restir::inputs::{Input, MAX_INPUTS};
+import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
 import package::restir::neighbour::{disk, on_film, similar, similarity};
 import package::restir::reservoir::{Reservoir};
 import package::slot::mis::{combine};
@@ -36,12 +37,8 @@ struct Params {
 override taps: u32 = 5u;
 
 @group(1) @binding(0) var<uniform> params: Params;
-/// Surfaces of this frame.
-@group(1) @binding(1) var<storage, read> surface: array<SurfaceRecord>;
-/// Reservoirs to join.
-@group(1) @binding(2) var<storage, read> current: array<Reservoir>;
 /// Joined.
-@group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
+@group(1) @binding(1) var<storage, read_write> reservoir: array<Reservoir>;
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
@@ -56,7 +53,7 @@ override taps: u32 = 5u;
     let radius = params.radius * select(1.0, f32(frame.extent.y) / params.rows, params.rows > 0.0);
     let limits = similarity(params.normal, params.depth);
     var inputs: array<Input, MAX_INPUTS>;
-    inputs[0] = Input(current[at], s);
+    inputs[0] = input_of(at, NOW, HUGE);
     var count = 1u;
     for (var i = 0u; i < min(taps, MAX_INPUTS - 1u); i++) {
         let there = vec2<i32>(id.xy) + vec2<i32>(round(radius * disk(rng_next4(&rng).xy)));
@@ -64,7 +61,7 @@ override taps: u32 = 5u;
         let index = index_of(vec2<u32>(there));
         let other = surface[index];
         if (!is_surface(other) || !similar(record, record.distance, other, limits)) { continue; }
-        inputs[count] = Input(current[index], unpack_surface(other, NOW));
+        inputs[count] = input_of(index, NOW, HUGE);
         count += 1u;
     }
     reservoir[at] = combine(s, &inputs, count, &rng);

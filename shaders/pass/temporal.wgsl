@@ -4,10 +4,11 @@
 //! tried. Last frame's targets are evaluated in last frame's world: its camera, g-buffer, transforms, lights and hierarchy. Which history is taken
 //! depends on the g-buffer alone, and capping its confidence changes no weight: with an unbiased rule in slot `mis` the pass is unbiased.
 
+import package::base::math::{HUGE};
 import package::base::rng::{Rng, rng_next4};
 import package::frame::frame::{BEFORE, NOW, camera_at, film_sample, frame, index_of, inside};
 import package::frame::random::{rng_for};
-import package::restir::inputs::{Input, MAX_INPUTS};
+import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, previous_surface, surface};
 import package::restir::neighbour::{disk, on_film, similar, similarity};
 import package::restir::reservoir::{Reservoir};
 import package::scene::geometry::{position_of};
@@ -38,18 +39,10 @@ struct Params {
 override tries: u32 = 2u;
 
 @group(1) @binding(0) var<uniform> params: Params;
-/// Surfaces of this frame.
-@group(1) @binding(1) var<storage, read> surface: array<SurfaceRecord>;
-/// Surfaces of last frame; wire it to `….surface@prev`.
-@group(1) @binding(2) var<storage, read> previous_surface: array<SurfaceRecord>;
 /// From this frame's film position to last frame's, pixels.
-@group(1) @binding(3) var<storage, read> motion: array<vec2<f32>>;
-/// Reservoirs of this frame.
-@group(1) @binding(4) var<storage, read> current: array<Reservoir>;
-/// Reservoirs of last frame.
-@group(1) @binding(5) var<storage, read> history: array<Reservoir>;
+@group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
 /// Both joined.
-@group(1) @binding(6) var<storage, read_write> reservoir: array<Reservoir>;
+@group(1) @binding(2) var<storage, read_write> reservoir: array<Reservoir>;
 
 const NOWHERE: u32 = 0xffffffffu;
 
@@ -69,9 +62,8 @@ const NOWHERE: u32 = 0xffffffffu;
     }
     let s = unpack_surface(record, NOW);
     var inputs: array<Input, MAX_INPUTS>;
-    inputs[0] = Input(current[at], s);
-    inputs[1] = Input(history[there], unpack_surface(previous_surface[there], BEFORE));
-    inputs[1].reservoir.confidence = min(inputs[1].reservoir.confidence, params.cap);
+    inputs[0] = input_of(at, NOW, HUGE);
+    inputs[1] = input_of(there, BEFORE, params.cap);
     reservoir[at] = combine(s, &inputs, 2u, &rng);
 }
 

@@ -1,18 +1,55 @@
-//! What a combination rule works on: reservoirs with the surfaces they were made for, and targets carried between them.
+//! What a combination rule works on: reservoirs with the surfaces they were made for, and targets carried between them. Input 0 is the canonical:
+//! the receiver's own, whose support is the receiver's whole domain.
 //!
 //! The target of input i, carried to the receiver by its shift T_i: p̂_{←i}(y) = p̂_i(T_i⁻¹ y) |∂T_i⁻¹/∂y|, and 0 where y is not an image of T_i
 //! (Lin et al. 2022). It holds visibility exactly where the reservoirs were made with it (slot `visibility`): at every y that counts, the
 //! shares of those inputs that can really have produced y must sum to 1.
 
+import package::frame::frame::{NOW};
 import package::restir::reservoir::{Reservoir};
 import package::slot::domain::{Sample, p_hat, shift, visible};
 import package::slot::visibility::{IN_TARGET};
-import package::surface::{Surface};
+import package::surface::{Surface, SurfaceRecord, unpack_surface};
 
 const MAX_INPUTS = 12u;
 
-/// Input 0 is the canonical: the receiver's own, whose support is the receiver's whole domain.
-struct Input { reservoir: Reservoir, surface: Surface }
+/// Names a reservoir and the surface that it was made for. Names, not copies: an array of copies would not fit into registers.
+struct Input {
+    pixel: u32,
+    /// `NOW` or `BEFORE`.
+    when: u32,
+    /// What the reservoir counts here, capped.
+    confidence: f32,
+}
+
+/// Surfaces of this frame.
+@group(1) @binding(10) var<storage, read> surface: array<SurfaceRecord>;
+/// Reservoirs of this frame.
+@group(1) @binding(11) var<storage, read> current: array<Reservoir>;
+/// Surfaces of last frame; wire it to `….surface@prev`.
+/// @optional
+@group(1) @binding(12) var<storage, read> previous_surface: array<SurfaceRecord>;
+/// Reservoirs of last frame, or of frames before.
+/// @optional
+@group(1) @binding(13) var<storage, read> history: array<Reservoir>;
+
+fn input_of(pixel: u32, when: u32, cap: f32) -> Input {
+    return Input(pixel, when, min(reservoir_at(pixel, when).confidence, cap));
+}
+
+fn reservoir_at(pixel: u32, when: u32) -> Reservoir {
+    if (when == NOW) { return current[pixel]; }
+    return history[pixel];
+}
+
+fn surface_at_pixel(pixel: u32, when: u32) -> Surface {
+    if (when == NOW) { return unpack_surface(surface[pixel], when); }
+    return unpack_surface(previous_surface[pixel], when);
+}
+
+fn surface_of_input(i: Input) -> Surface {
+    return surface_at_pixel(i.pixel, i.when);
+}
 
 /// The sample of an input in the receiver's domain.
 struct Candidate {
@@ -21,8 +58,8 @@ struct Candidate {
     p_hat: f32,
     /// W |∂T/∂x|: the contribution weight in the receiver's domain.
     weight: f32,
-    /// |∂T/∂x|.
-    jacobian: f32,
+    /// p̂_{←i} of its own input: p̂_i(X_i) / |∂T/∂x|, without shifting back. Visibility was tested when the input was made.
+    own: f32,
 }
 
 /// A sample carried from one surface's domain to another's; `p_hat` is 0 where the shift does not exist.
@@ -41,25 +78,23 @@ fn target_from(y: Sample, at: Surface, src: Surface) -> f32 {
     return x.p_hat * x.jacobian;
 }
 
-/// Sample of input i, carried to the receiver.
-fn candidate(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, i: u32) -> Candidate {
-    let r = (*inputs)[i].reservoir;
+/// The sample of an input, carried to the receiver. The canonical is at home: where targets hold visibility, it was tested when it was made.
+fn candidate(at: Surface, from_input: Input, is_canonical: bool) -> Candidate {
+    let r = reservoir_at(from_input.pixel, from_input.when);
     if (r.weight.value <= 0.0) { return Candidate(r.sample, 0.0, 0.0, 0.0); }
-    // The canonical is at home; where its target holds visibility, it was tested when it was made.
-    if (i == 0u) { return Candidate(r.sample, p_hat(r.sample, at), r.weight.value, 1.0); }
-    let y = move_to(r.sample, (*inputs)[i].surface, at);
-    return Candidate(y.sample, y.p_hat, r.weight.value * y.jacobian, y.jacobian);
-}
-
-/// p̂_{←i} at input i's own candidate: p̂_i(X_i) / |∂T/∂x|, without shifting back. Visibility was tested when the input was made.
-fn own_target(c: Candidate, inputs: ptr<function, array<Input, MAX_INPUTS>>, i: u32) -> f32 {
-    if (i == 0u) { return c.p_hat; }
-    return p_hat((*inputs)[i].reservoir.sample, (*inputs)[i].surface) / c.jacobian;
+    if (is_canonical) {
+        let here = p_hat(r.sample, at);
+        return Candidate(r.sample, here, r.weight.value, here);
+    }
+    let src = surface_of_input(from_input);
+    let y = move_to(r.sample, src, at);
+    if (y.p_hat <= 0.0) { return Candidate(r.sample, 0.0, 0.0, 0.0); }
+    return Candidate(y.sample, y.p_hat, r.weight.value * y.jacobian, p_hat(r.sample, src) / y.jacobian);
 }
 
 /// C = Σc. An empty reservoir counts: that it found nothing is knowledge too.
 fn total_confidence(inputs: ptr<function, array<Input, MAX_INPUTS>>, count: u32) -> f32 {
     var total = 0.0;
-    for (var i = 0u; i < count; i++) { total += (*inputs)[i].reservoir.confidence; }
+    for (var i = 0u; i < count; i++) { total += (*inputs)[i].confidence; }
     return total;
 }

@@ -74,6 +74,15 @@ impl Renderer {
         Ok(())
     }
 
+    /// Begins anew with another seed, for independent renders of the same frames.
+    ///
+    /// # Errors
+    /// As [`Renderer::restart`].
+    pub fn reseed(&mut self, seed: u64) -> Result<(), Error> {
+        self.options.seed = seed;
+        self.restart()
+    }
+
     fn begin(&mut self) {
         self.next = self.options.first_frame;
         self.history_valid = false;

@@ -1,7 +1,7 @@
 //! What can be typed.
 
 use crate::{
-    command::{adapters, check, completions, diff, dot, graphs, man, merge, passes, render, scenes},
+    command::{adapters, check, completions, diff, dot, graphs, man, merge, passes, render, scenes, schema},
     failure::Failure,
     ui::Ui,
 };
@@ -42,6 +42,8 @@ pub enum Command {
     Dot(dot::Args),
     /// List the kinds of passes, or show one's manual page
     Passes(passes::Args),
+    /// Print a JSON Schema of graph files, so that editors complete and explain them
+    Schema(schema::Args),
     /// List the built-in graphs, or print one
     Graphs(graphs::Args),
     /// List, describe and export scenes
@@ -69,6 +71,7 @@ impl Command {
             Self::Dot(args) => dot::run(args, ui),
             Self::Passes(args) => passes::run(args, ui),
             Self::Graphs(args) => graphs::run(args, ui),
+            Self::Schema(args) => schema::run(args, ui),
             Self::Scenes(args) => scenes::run(args, ui),
             Self::Adapters(args) => adapters::run(args, ui),
             Self::Merge(args) => merge::run(args, ui),

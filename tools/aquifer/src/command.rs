@@ -11,3 +11,4 @@ pub mod merge;
 pub mod passes;
 pub mod render;
 pub mod scenes;
+pub mod schema;

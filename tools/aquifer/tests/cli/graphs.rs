@@ -76,3 +76,29 @@ fn a_folder_of_shaders_adds_passes() {
     assert!(page.contains("Paints everything grey.") && page.contains("The paint."), "{page}");
     aquifer(&["passes", "grey", "--shaders", "/no/such/folder"]).fails(1, "/no/such/folder");
 }
+
+#[test]
+fn the_schema_takes_what_check_takes() {
+    let schema: serde_json::Value = serde_json::from_str(&aquifer(&["schema"]).succeeds().out).expect("JSON");
+    let validator = jsonschema::draft7::new(&schema).expect("a draft-07 schema");
+    let as_json = |text: &str| serde_json::to_value(toml::from_str::<toml::Value>(text).expect("TOML")).expect("JSON");
+    let list = aquifer(&["graphs"]).succeeds().out;
+    for name in list.lines().filter_map(|line| line.split_whitespace().next()) {
+        let graph = as_json(&aquifer(&["graphs", name]).succeeds().out);
+        let faults: Vec<String> = validator.iter_errors(&graph).map(|fault| format!("{}: {fault}", fault.instance_path)).collect();
+        assert!(faults.is_empty(), "{name}: {faults:?}");
+    }
+    for wrong in [
+        "outptu = 'a.b'",
+        "transport = 'indirect:0'",
+        "[slots]\nproposal = 'powr'",
+        "[pass.path_tracer]\nset.samples = 0",
+        "[pass.path_tracer]\nset.sample = 1",
+        "[pass.path_tracer]\nin.surfaces = 'a.b'",
+        "[pass.mine]\nkind = 'no_such_kind'",
+    ] {
+        assert!(!validator.is_valid(&as_json(wrong)), "{wrong}");
+    }
+    let exposure = &schema["properties"]["pass"]["properties"]["tonemap"]["properties"]["set"]["properties"]["exposure"];
+    assert_eq!(exposure["description"], "Exposure in stops.");
+}
