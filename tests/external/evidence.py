@@ -21,7 +21,8 @@ import compare
 HERE = pathlib.Path(__file__).resolve().parent
 OUTPUT = HERE.parents[1] / 'docs' / 'evidence' / 'external.json'
 MATRIX = [f'{scene}:{transport}' for scene in ('cornell', 'glossy') for transport in ('direct', 'indirect:2', 'full:4')]
-PER_FRAME = 16
+# Paths that share a film position: more of them save dispatches, but leave the noise of edges.
+PER_FRAME = 4
 
 
 def run(*command):
