@@ -20,7 +20,11 @@ fn a_frame_of_an_animation_is_its_moment() {
     let moment = image(&mut Parts { view: still, first_frame: 8, ..Parts::new(&scene, graph) }.renderer(&context), 1);
     assert_eq!(played, moment);
     let start = View { time: 0.3, ..View::default() };
-    assert_ne!(moment, image(&mut Parts { view: start, first_frame: 8, ..Parts::new(&scene, graph) }.renderer(&context), 1), "nothing moves");
+    assert_ne!(
+        moment,
+        image(&mut Parts { view: start, first_frame: 8, ..Parts::new(&scene, graph) }.renderer(&context), 1),
+        "nothing moves"
+    );
 }
 
 /// Film point of a world position, in pixels from the top left, in f64.
@@ -39,7 +43,10 @@ fn place(scene: &Scene, moment: &Moment, instance: usize, triangle: usize, baryc
     let [a, b, c] = scene.meshes[instance.mesh as usize].corners(triangle).map(|corner| corner.as_dvec3());
     let local = a + f64::from(barycentrics[0]) * (b - a) + f64::from(barycentrics[1]) * (c - a);
     let m = &instance.transform.matrix3;
-    m.x_axis.as_dvec3() * local.x + m.y_axis.as_dvec3() * local.y + m.z_axis.as_dvec3() * local.z + instance.transform.translation.as_dvec3()
+    m.x_axis.as_dvec3() * local.x
+        + m.y_axis.as_dvec3() * local.y
+        + m.z_axis.as_dvec3() * local.z
+        + instance.transform.translation.as_dvec3()
 }
 
 #[test]
@@ -56,7 +63,8 @@ fn motion_leads_to_where_things_were() {
     let surface = renderer.read_f32("gbuffer_traced.surface").unwrap();
     let motion = renderer.read_f32("gbuffer_traced.motion").unwrap();
     let [before, now] = [2, 3].map(|frame| scene.at(view.time_at(frame), None).unwrap());
-    let firsts: Vec<usize> = scene.meshes.iter().scan(0, |next, mesh| Some(std::mem::replace(next, *next + mesh.triangles.len()))).collect();
+    let firsts: Vec<usize> =
+        scene.meshes.iter().scan(0, |next, mesh| Some(std::mem::replace(next, *next + mesh.triangles.len()))).collect();
     let (mut surfaces, mut moved) = (0, 0);
     for (record, motion) in surface.chunks_exact(16).zip(motion.chunks_exact(2)) {
         let (instance, triangle) = (record[3].to_bits(), record[4].to_bits() as usize);
