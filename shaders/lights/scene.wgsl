@@ -46,6 +46,8 @@ struct LightPoint {
     double_sided: bool,
     size: f32,
     light: u32,
+    /// The world that the point is in.
+    when: u32,
 }
 
 /// What a light point sends to a receiver, before the BSDF and visibility.
@@ -66,6 +68,7 @@ fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
     let light = lights[id];
     var p: LightPoint;
     p.light = id;
+    p.when = when;
     @if(punctual_lights) {
         if (light.kind == PUNCTUAL) {
             let l = punctual_at(light.index, when);
@@ -103,6 +106,7 @@ fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> 
     p.double_sided = (materials[material].flags & DOUBLE_SIDED) != 0u;
     p.size = max(max3(abs(a)), max(max3(abs(b)), max3(abs(c))));
     p.light = id;
+    p.when = when;
     return p;
 }
 
@@ -124,7 +128,7 @@ fn arrive(p: LightPoint, from_position: vec3<f32>) -> Arrival {
 
 /// Spot cone and range window of a punctual light.
 fn falloff(p: LightPoint, direction: vec3<f32>, d2: f32) -> f32 {
-    @if(punctual_lights) { return punctual_falloff(lights[p.light].index, direction, d2); }
+    @if(punctual_lights) { return punctual_falloff(lights[p.light].index, direction, d2, p.when); }
     return 1.0;
 }
 

@@ -1,6 +1,6 @@
 //! Fills slot `mis`: the generalised balance heuristic m_i(y) = c_i p̂_{←i}(y) / Σ_j c_j p̂_{←j}(y) (Lin et al. 2022).
 //!
-//! Unbiased, and the least noisy; O(k²) targets.
+//! Unbiased. O(k²) targets: the most costly of the rules.
 
 import package::base::rng::{Rng, rng_next4};
 import package::restir::inputs::{Candidate, Input, MAX_INPUTS, candidate, surface_of_input, target_from};

@@ -28,8 +28,8 @@ fn punctual_at(id: u32, when: u32) -> Punctual {
 
 /// Share that reaches a receiver which sees the light along unit `direction`, from squared distance `d2`: the cone's smooth edge,
 /// and the window max(min(1 − (d / range)⁴, 1), 0) that the extension recommends.
-fn punctual_falloff(id: u32, direction: vec3<f32>, d2: f32) -> f32 {
-    let l = punctuals[id];
+fn punctual_falloff(id: u32, direction: vec3<f32>, d2: f32, when: u32) -> f32 {
+    let l = punctual_at(id, when);
     var share = 1.0;
     if (l.kind == 2u) {
         let edge = clamp(-dot(l.direction, direction) * l.cone_scale + l.cone_offset, 0.0, 1.0);

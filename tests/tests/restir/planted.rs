@@ -1,0 +1,96 @@
+//! Bugs seen in public renderers, planted by replacing text of the shaders: each must show at five standard errors.
+
+use crate::toy::{INPUTS, difference, estimates, graph, module, renderer, replaced};
+use aquifer_tests::context;
+
+const SHARED: &str = "restir/inputs";
+
+struct Bug {
+    name: &'static str,
+    module: &'static str,
+    what: &'static str,
+    by: &'static str,
+    rule: &'static str,
+    visibility: &'static str,
+}
+
+const BUGS: [Bug; 8] = [
+    Bug {
+        name: "inverted Jacobian",
+        module: SHARED,
+        what: "r.weight.value * y.jacobian",
+        by: "r.weight.value / y.jacobian",
+        rule: "pairwise",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "visibility missing in Z",
+        module: SHARED,
+        what: "let x = move_to(y, at, src);",
+        by: "let x = shift(y, at, src);",
+        rule: "contribution",
+        visibility: "in_target",
+    },
+    Bug {
+        name: "visibility too much in Z",
+        module: SHARED,
+        what: "let x = move_to(y, at, src);",
+        by: "let x = move_to(y, at, src); if (!visible(x.sample, src)) { return 0.0; }",
+        rule: "contribution",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "visibility missing in the balance heuristic's denominator",
+        module: SHARED,
+        what: "let x = move_to(y, at, src);",
+        by: "let x = shift(y, at, src);",
+        rule: "balance",
+        visibility: "in_target",
+    },
+    Bug {
+        name: "M counted twice",
+        module: SHARED,
+        what: "total += (*inputs)[i].confidence;",
+        by: "total += (*inputs)[i].confidence + 1.0;",
+        rule: "pairwise",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "a reused sample keeps its source's target value",
+        module: SHARED,
+        what: "return Candidate(y.sample, y.p_hat,",
+        by: "return Candidate(y.sample, p_hat(r.sample, src),",
+        rule: "pairwise",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "swapped arguments of a MIS weight",
+        module: SHARED,
+        what: "let x = move_to(y, at, src);",
+        by: "let x = move_to(y, src, at);",
+        rule: "balance",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "neighbours rejected because of their samples",
+        module: "mis/pairwise",
+        what: "        sum += (*inputs)[i].confidence * here / (there + here);",
+        by: "        if (package::restir::inputs::reservoir_at((*inputs)[i].pixel, (*inputs)[i].when).weight.value <= 0.0) { continue; }\n        sum += (*inputs)[i].confidence * here / (there + here);",
+        rule: "pairwise",
+        visibility: "at_shading",
+    },
+];
+
+#[test]
+fn planted_bugs_show() {
+    let Some(context) = context() else { return };
+    for bug in &BUGS {
+        let text = replaced(module(bug.module), bug.what, bug.by);
+        // Few candidates, so that there are empty reservoirs.
+        let graph = graph(bug.rule, bug.visibility, 2);
+        let mut renderer = renderer(&context, &graph, &[(bug.module, &text)], &[]);
+        let found = difference(&estimates(&mut renderer, |all| all[0].count() >= 8 * 32_768)[INPUTS - 3]);
+        eprintln!("{}: {:+.3} % ± {:.3} %", bug.name, 100.0 * found.value, 100.0 * found.standard_error);
+        assert!(found.score(0.0).abs() >= 5.0, "{} does not show", bug.name);
+    }
+}
