@@ -10,9 +10,9 @@ const PAGE: &str = include_str!("../../../docs/mis_rules.md");
 
 /// The fenced block whose first line names `file`.
 fn block(file: &str) -> &'static str {
-    let blocks = PAGE.split("```").skip(1).step_by(2);
+    let mut blocks = PAGE.split("```").skip(1).step_by(2);
     let named = |block: &&str| block.lines().nth(1).is_some_and(|line| line.contains(file));
-    let text = blocks.filter(named).next().unwrap_or_else(|| panic!("the page shows {file}"));
+    let text = blocks.find(named).unwrap_or_else(|| panic!("the page shows {file}"));
     text.split_once('\n').expect("a block has lines").1
 }
 
