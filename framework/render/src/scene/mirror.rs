@@ -224,6 +224,8 @@ mod tests {
         }
     }
 
+    /// Rounding moves x and y of the octahedron by half a step, 1 / 65,534, and z by both together; making the vector unit stretches that
+    /// by at most √3: √6 · √3 / 65,534 = 6.5e-5.
     #[test]
     fn packed_units_keep_their_direction() {
         for i in 0..1000 {
@@ -234,7 +236,7 @@ mod tests {
             let z = 1.0 - p[0].abs() - p[1].abs();
             let fold = (-z).max(0.0);
             let back = Vec3::new(p[0] - fold.copysign(p[0]), p[1] - fold.copysign(p[1]), z).normalize();
-            assert!((back - v).length() < 5e-5, "{v} {back}");
+            assert!((back - v).length() < 6.5e-5, "{v} {back}");
         }
     }
 }
