@@ -4,7 +4,7 @@
 #     tools/evidence.sh external [--size 64x36|256x144] [--samples N] [SCENE:TRANSPORT …]
 #
 # external: the path tracer against Mitsuba 3 (tests/external). PYTHON names an interpreter that has tests/external/requirements.txt.
-# Counted: 8,192 samples at 256x144 of full:4 are 3·10⁹ rays a scene, an hour on two cores.
+# Counted: 8,192 samples at 256x144 are 3·10⁸ paths, of full:4 one to three 10⁹ rays: half an hour to an hour on two cores.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh

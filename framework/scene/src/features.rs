@@ -16,7 +16,7 @@ macro_rules! features {
             /// Every name that shaders may ask for.
             pub const NAMES: &[&'static str] = &[$(stringify!($name)),+];
 
-            /// The names of the facts that hold: what shaders see in `#ifdef`.
+            /// The names of the facts that hold: what shaders see in `@if`.
             pub fn names(&self) -> BTreeSet<&'static str> {
                 let mut names = BTreeSet::new();
                 $(if self.$name { names.insert(stringify!($name)); })+

@@ -16,7 +16,7 @@ mod value;
 use clap::Parser as _;
 use std::process::ExitCode;
 
-/// The Vulkan loader complains on every start when this variable is unset: a private folder stands in.
+/// The Vulkan loader complains on every start when this variable is unset: a folder of ours stands in.
 #[expect(unsafe_code, reason = "the first thing in main: no other thread can be reading the environment")]
 fn set_runtime_folder() {
     const NAME: &str = "XDG_RUNTIME_DIR";
