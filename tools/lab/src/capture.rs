@@ -42,6 +42,8 @@ pub enum CaptureError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capture {
     moments: Option<String>,
+    /// What `moments` is the mean of.
+    frame: Option<PortId>,
     /// Frames do not share samples, so that their spread tells the variance of their mean.
     independent: bool,
 }
@@ -49,17 +51,36 @@ pub struct Capture {
 impl Capture {
     /// Finds the running mean nearest to the graph's output.
     pub fn of(graph: &Graph) -> Self {
-        let moments = upstream(graph).into_iter().find_map(|node| moments_of(graph, node));
+        let averaging = upstream(graph).into_iter().find_map(|node| Some((node, moments_of(graph, node)?)));
+        let frame = averaging.as_ref().and_then(|(node, _)| frame_of(graph, *node));
+        let moments = averaging.map(|(_, name)| name);
         let remembers = |(index, node): (usize, &aquifer_graph::Node)| {
             let averages = moments_of(graph, index).is_some();
             !averages && node.wires.iter().flatten().any(|wire| wire.when == When::Previous)
         };
-        Self { moments, independent: !graph.nodes().iter().enumerate().any(remembers) }
+        Self { moments, frame, independent: !graph.nodes().iter().enumerate().any(remembers) }
     }
 
     /// Resources that the plan must keep.
     pub fn keep(&self) -> Vec<&str> {
         self.moments.iter().map(String::as_str).collect()
+    }
+
+    /// Frames share no samples: their mean gets better with their number, and its variance shows in their spread.
+    pub fn independent(&self) -> bool {
+        self.independent
+    }
+
+    /// The resource that holds the radiance of a single frame: what is averaged, or the output where nothing is.
+    pub fn frame_port(&self, graph: &Graph) -> PortId {
+        self.frame.unwrap_or(graph.output())
+    }
+
+    /// Radiance of the last frame alone, from the resource that [`Capture::frame_port`] names.
+    pub fn last_frame(&self, graph: &Graph, renderer: &mut Renderer) -> Result<Film, CaptureError> {
+        let port = self.frame_port(graph);
+        let ty = &graph.nodes()[port.node].port(port.port).ty;
+        picture(renderer, graph.port_name(port), &ty.element, ty.stride)
     }
 
     /// Samples that every pixel gets in a frame: passes that can take several have a parameter called `samples`.
@@ -95,14 +116,19 @@ impl Capture {
     /// What the graph shows: linear and display-referred.
     pub fn display(&self, renderer: &mut Renderer) -> Result<Film, CaptureError> {
         let output = &renderer.plan().resources[renderer.plan().output];
-        let (name, element, stride) = (output.name.clone(), output.ty.element.clone(), output.ty.stride as usize / size_of::<f32>());
-        if !matches!(element.as_str(), "vec3<f32>" | "vec4<f32>") {
-            return Err(CaptureError::NoPicture { name, element });
-        }
-        let words = renderer.read_f32(&name)?;
-        let color = words.chunks_exact(stride).map(|pixel| three(pixel, 0)).collect();
-        Ok(Film::new(renderer.options().size, color)?)
+        let (name, element, stride) = (output.name.clone(), output.ty.element.clone(), output.ty.stride);
+        picture(renderer, name, &element, stride)
     }
+}
+
+/// A resource of colours as a film.
+fn picture(renderer: &mut Renderer, name: String, element: &str, stride: u32) -> Result<Film, CaptureError> {
+    if !matches!(element, "vec3<f32>" | "vec4<f32>") {
+        return Err(CaptureError::NoPicture { name, element: element.to_owned() });
+    }
+    let words = renderer.read_f32(&name)?;
+    let color = words.chunks_exact(stride as usize / size_of::<f32>()).map(|pixel| three(pixel, 0)).collect();
+    Ok(Film::new(renderer.options().size, color)?)
 }
 
 fn three(words: &[f32], at: usize) -> [f32; 3] {
@@ -129,6 +155,14 @@ fn moments_of(graph: &Graph, node: usize) -> Option<String> {
     let ports = &graph.nodes()[node].contract.ports;
     let port = ports.iter().position(|port| port.ty.element == MOMENTS && port.direction != aquifer_graph::Direction::In)?;
     Some(graph.port_name(PortId { node, port }))
+}
+
+/// What a node averages: its input of colours.
+fn frame_of(graph: &Graph, node: usize) -> Option<PortId> {
+    let node = &graph.nodes()[node];
+    let colors = |port: &aquifer_graph::Port| matches!(port.ty.element.as_str(), "vec3<f32>" | "vec4<f32>");
+    let wires = node.contract.ports.iter().zip(&node.wires);
+    wires.filter(|(port, _)| colors(port)).find_map(|(_, wire)| wire.filter(|wire| wire.when == When::This)).map(|wire| wire.from)
 }
 
 /// Places of the members in units of 4 bytes.

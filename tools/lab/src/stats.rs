@@ -12,11 +12,13 @@ pub mod error;
 pub mod moments;
 pub mod multiple;
 pub mod pixels;
+pub mod rank_sum;
 pub mod rng;
 
 pub use blocks::{BlockTest, Blocks, compare_blocks};
 pub use difference::{Difference, Estimate, Rule, Verdict};
 pub use moments::Moments;
+pub use rank_sum::rank_sum;
 
 /// Two images that should be compared have different sizes.
 #[derive(Clone, Copy, Debug, thiserror::Error, PartialEq, Eq)]

@@ -1,0 +1,10 @@
+//! Comparing graphs: how long each takes, how far from the truth it is then, and whether the difference is more than chance.
+
+pub mod budget;
+pub mod error;
+pub mod observer;
+pub mod reference;
+pub mod report;
+pub mod store;
+pub mod subject;
+pub mod summary;
