@@ -101,6 +101,7 @@ macro_rules! failed {
 
 failed!(
     aquifer_lab::atomic::WriteError,
+    aquifer_lab::film::AreaError,
     aquifer_lab::film::FilmError,
     aquifer_lab::stats::SizesDiffer,
     aquifer_scenes::ExportError,

@@ -1,13 +1,16 @@
 //! Rendered images with everything needed to use them as evidence: variance, sample counts, and what made them.
 
+mod area;
 mod channels;
 mod exr;
 mod facts;
 mod merge;
 mod png;
 
+pub use area::{Area, AreaError, Region};
 pub use facts::{Facts, GraphText, Overlap, Run, Runs};
 pub use merge::{MergeError, merge};
+pub(crate) use png::{linear, srgb};
 
 use crate::atomic::WriteError;
 use std::path::{Path, PathBuf};

@@ -1,13 +1,14 @@
 //! Measuring: image files, statistics, references. No command line, no window.
 //!
-//! [`film`] holds rendered images and their files, [`capture`] takes them off a renderer that [`stage`] made ready, [`stats`] decides what differences between them mean;
-//! [`compare`] holds graphs against each other.
+//! [`film`] holds rendered images and their files, [`capture`] takes them off a renderer that [`stage`] made ready, [`metrics`] says how far
+//! they are from a reference, [`stats`] decides what differences between them mean; [`compare`] holds graphs against each other.
 //! Everything here is deterministic: the same images give the same verdicts.
 
 pub mod atomic;
 pub mod capture;
 pub mod compare;
 pub mod film;
+pub mod metrics;
 pub mod rays;
 pub mod stage;
 pub mod stats;

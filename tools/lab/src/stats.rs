@@ -26,6 +26,6 @@ pub use rank_sum::rank_sum;
 pub struct SizesDiffer(pub [u32; 2], pub [u32; 2]);
 
 /// Checks that two images can be compared pixel by pixel.
-fn same_size(a: [u32; 2], b: [u32; 2]) -> Result<(), SizesDiffer> {
+pub(crate) fn same_size(a: [u32; 2], b: [u32; 2]) -> Result<(), SizesDiffer> {
     if a == b { Ok(()) } else { Err(SizesDiffer(a, b)) }
 }

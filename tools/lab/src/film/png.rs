@@ -21,18 +21,23 @@ pub(super) fn read(path: &Path) -> Result<Film, FilmError> {
         .decode()
         .map_err(|source| FilmError::Png { path: path.to_owned(), source })?
         .into_rgb16();
-    let color = picture.pixels().map(|pixel| pixel.0.map(|value| decode(f32::from(value) / f32::from(u16::MAX)))).collect();
+    let color = picture.pixels().map(|pixel| pixel.0.map(|value| linear(f32::from(value) / f32::from(u16::MAX)))).collect();
     Film::new([picture.width(), picture.height()], color)
 }
 
-/// IEC 61966-2-1 transfer function to 8 bits. NaN becomes 0.
+/// To 8 bits. NaN becomes 0.
 fn encode(linear: f32) -> u8 {
-    let x = linear.clamp(0.0, 1.0);
-    let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-    (encoded * 255.0).round() as u8
+    (srgb(linear) * 255.0).round() as u8
 }
 
-fn decode(encoded: f32) -> f32 {
+/// IEC 61966-2-1 transfer function; what lies outside 0 to 1 is cut off.
+pub(crate) fn srgb(linear: f32) -> f32 {
+    let x = linear.clamp(0.0, 1.0);
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The inverse of [`srgb`].
+pub(crate) fn linear(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
@@ -44,7 +49,7 @@ mod tests {
     fn every_code_survives() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let grey: Vec<[f32; 3]> = (0..=255).map(|code| [decode(code as f32 / 255.0); 3]).collect();
+        let grey: Vec<[f32; 3]> = (0..=255).map(|code| [linear(code as f32 / 255.0); 3]).collect();
         let film = Film::new([16, 16], grey).unwrap();
         film.write(&path).unwrap();
         let codes = image::open(&path).unwrap().into_rgb8();

@@ -1,12 +1,12 @@
 //! How far a noisy image is from the truth, when the truth is itself a noisy image.
 
 use super::{SizesDiffer, same_size};
-use crate::film::Film;
+use crate::film::{Area, Film};
 
 /// Added to the squared reference in relative errors, so that black pixels do not rule the sum; the value that tev uses.
 pub const EPSILON: f64 = 0.01;
 
-/// A mean square error, averaged over pixels and channels.
+/// A mean square error, averaged over pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SquareError {
     /// Of the image against the reference as it is.
@@ -21,6 +21,12 @@ impl SquareError {
         self.raw - self.reference
     }
 
+    /// The mean over channels.
+    pub fn over_channels(channels: [Self; 3]) -> Self {
+        let mean = |part: fn(&Self) -> f64| channels.iter().map(part).sum::<f64>() / 3.0;
+        Self { raw: mean(|error| error.raw), reference: mean(|error| error.reference) }
+    }
+
     /// Is the reference good enough: does its variance stay below `share` of the error?
     pub fn is_resolved(&self, share: f64) -> bool {
         self.reference <= share * self.value()
@@ -29,25 +35,37 @@ impl SquareError {
 
 /// Mean square error.
 pub fn mse(image: &Film, reference: &Film) -> Result<SquareError, SizesDiffer> {
-    weighted(image, reference, |_| 1.0)
+    Ok(SquareError::over_channels(mse_over(image, reference, &Area::whole(reference.size))?))
 }
 
 /// Relative mean square error: (x − r)² / (r² + [`EPSILON`]).
 pub fn rel_mse(image: &Film, reference: &Film) -> Result<SquareError, SizesDiffer> {
-    weighted(image, reference, |r| 1.0 / (r * r + EPSILON))
+    Ok(SquareError::over_channels(rel_mse_over(image, reference, &Area::whole(reference.size))?))
 }
 
-fn weighted(image: &Film, reference: &Film, weight: impl Fn(f64) -> f64) -> Result<SquareError, SizesDiffer> {
+/// Mean square errors of red, green and blue in an area.
+pub fn mse_over(image: &Film, reference: &Film, area: &Area) -> Result<[SquareError; 3], SizesDiffer> {
+    weighted(image, reference, area, |_| 1.0)
+}
+
+/// Relative mean square errors of red, green and blue in an area.
+pub fn rel_mse_over(image: &Film, reference: &Film, area: &Area) -> Result<[SquareError; 3], SizesDiffer> {
+    weighted(image, reference, area, |r| 1.0 / (r * r + EPSILON))
+}
+
+fn weighted(image: &Film, reference: &Film, area: &Area, weight: impl Fn(f64) -> f64) -> Result<[SquareError; 3], SizesDiffer> {
     same_size(image.size, reference.size)?;
-    let (mut raw, mut noise) = (0.0, 0.0);
-    for (x, r) in image.color.iter().flatten().zip(reference.color.iter().flatten()) {
-        raw += (f64::from(*x) - f64::from(*r)).powi(2) * weight(f64::from(*r));
-    }
-    for (v, r) in reference.variance.iter().flatten().flatten().zip(reference.color.iter().flatten()) {
-        noise += f64::from(*v) * weight(f64::from(*r));
-    }
-    let count = 3.0 * reference.pixels() as f64;
-    Ok(SquareError { raw: raw / count, reference: noise / count })
+    same_size(area.size(), reference.size)?;
+    let count = area.count() as f64;
+    Ok([0, 1, 2].map(|c| {
+        let (mut raw, mut noise) = (0.0, 0.0);
+        for i in area.pixels() {
+            let r = f64::from(reference.color[i][c]);
+            raw += (f64::from(image.color[i][c]) - r).powi(2) * weight(r);
+            noise += reference.variance.as_ref().map_or(0.0, |v| f64::from(v[i][c]) * weight(r));
+        }
+        SquareError { raw: raw / count, reference: noise / count }
+    }))
 }
 
 #[cfg(test)]
