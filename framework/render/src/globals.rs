@@ -26,6 +26,9 @@ pub trait Globals: Send {
     /// What is bound to `name` of `module` (`triangles` of `scene/geometry`); `None` where this scene has no such thing.
     fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>>;
 
+    /// Goes to another time of what moves, from the next frame on: seconds at frame 0, and from one frame to the next.
+    fn set_time(&mut self, _time: f32, _step: f32) {}
+
     /// A number that changes whenever [`Globals::resource`] begins to answer with other resources: bind groups are then made anew.
     fn generation(&self) -> u64 {
         0

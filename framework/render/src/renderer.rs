@@ -120,6 +120,11 @@ impl Renderer {
         self.restart()
     }
 
+    /// Goes to another time of the scene from the next frame on: seconds at frame 0, and from one frame to the next. History stays as it is.
+    pub fn set_time(&mut self, time: f32, step: f32) {
+        self.globals.set_time(time, step);
+    }
+
     /// Sets a live parameter from the next frame on; history stays as it is.
     ///
     /// # Errors

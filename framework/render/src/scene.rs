@@ -109,6 +109,10 @@ impl Globals for SceneGlobals {
         Ok(())
     }
 
+    fn set_time(&mut self, time: f32, step: f32) {
+        (self.view.time, self.view.step) = (time, step);
+    }
+
     fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>> {
         let name = format!("{module}::{name}");
         self.moving.buffer(&name).or_else(|| self.still.buffer(&name)).map(wgpu::Buffer::as_entire_binding)

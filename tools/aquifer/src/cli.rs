@@ -1,7 +1,7 @@
 //! What can be typed.
 
 use crate::{
-    command::{adapters, check, completions, diff, dot, graphs, man, merge, passes, render, scenes, schema},
+    command::{adapters, check, compare, completions, diff, dot, graphs, man, merge, passes, render, scenes, schema},
     failure::Failure,
     ui::Ui,
 };
@@ -36,6 +36,8 @@ pub struct Global {
 pub enum Command {
     /// Render a scene with a graph
     Render(render::Args),
+    /// Compare graphs at equal time: who has less error, and by how much
+    Compare(compare::Args),
     /// Check a graph, and say whether it is unbiased
     Check(check::Args),
     /// Draw a graph in Graphviz's language
@@ -67,6 +69,7 @@ impl Command {
     pub fn run(self, ui: &Ui) -> Result<(), Failure> {
         match self {
             Self::Render(args) => render::run(args, ui),
+            Self::Compare(args) => compare::run(args, ui),
             Self::Check(args) => check::run(args, ui),
             Self::Dot(args) => dot::run(args, ui),
             Self::Passes(args) => passes::run(args, ui),

@@ -2,7 +2,7 @@
 
 use crate::{faults, ui::Ui};
 use aquifer_graph::Faults;
-use aquifer_lab::{capture::CaptureError, stage::StageError};
+use aquifer_lab::{capture::CaptureError, compare::error::CompareError, stage::StageError};
 use std::{error::Error, process::ExitCode};
 
 /// A command's failure.
@@ -74,6 +74,17 @@ impl From<CaptureError> for Failure {
     fn from(error: CaptureError) -> Self {
         match error {
             CaptureError::Render(error) => error.into(),
+            other => Self::Failed(other.into()),
+        }
+    }
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        match error {
+            CompareError::Graph(faults) => Self::Graph(faults),
+            CompareError::Render(error) => error.into(),
+            CompareError::Capture(error) => error.into(),
             other => Self::Failed(other.into()),
         }
     }

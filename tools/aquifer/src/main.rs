@@ -12,6 +12,7 @@ mod progress;
 mod source;
 mod ui;
 mod value;
+mod watch;
 
 use clap::Parser as _;
 use std::process::ExitCode;

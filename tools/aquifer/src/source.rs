@@ -82,6 +82,17 @@ impl SceneArgs {
         if is_file(&self.scene) { identity(Path::new(&self.scene)) } else { Ok(self.scene.clone()) }
     }
 
+    /// A text that changes whenever what the scene holds does.
+    pub fn content(&self) -> Result<String, Failure> {
+        if is_file(&self.scene) {
+            return self.identity();
+        }
+        let exported = aquifer_scenes::export(&(generator(&self.scene)?.make)())?;
+        let mut hash = blake3::Hasher::new();
+        hash.update(&exported.glb).update(&exported.environment.unwrap_or_default());
+        Ok(format!("{} {}", self.scene, &hash.finalize().to_hex()[..32]))
+    }
+
     /// The environment as films name it.
     pub fn environment_identity(&self) -> Result<Option<String>, Failure> {
         self.environment.as_deref().map(identity).transpose()
@@ -127,6 +138,12 @@ fn identity(path: &Path) -> Result<String, Failure> {
     let bytes = std::fs::read(path).map_err(|error| Failure::new(format!("cannot read `{}`: {error}", path.display())))?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     Ok(format!("{name} {}", &blake3::hash(&bytes).to_hex()[..32]))
+}
+
+/// Every text that the graph was read from: its files, then what the command line laid over them.
+pub fn text_of(graph: &Graph) -> String {
+    let part = |source: &Source| format!("# {}\n{}\n", source.name, source.text.trim_end());
+    graph.sources().iter().map(part).collect::<Vec<_>>().join("\n")
 }
 
 /// Graph files on disk, over the built-in ones.

@@ -26,6 +26,14 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Milliseconds, more than none.
+pub fn milliseconds(text: &str) -> Result<f64, String> {
+    match text.trim_end_matches("ms").trim().parse::<f64>() {
+        Ok(milliseconds) if milliseconds.is_finite() && milliseconds > 0.0 => Ok(milliseconds),
+        _ => Err("write a number of milliseconds above 0".to_owned()),
+    }
+}
+
 /// Which light paths.
 pub fn transport(text: &str) -> Result<Transport, String> {
     text.parse().map_err(|error: aquifer_graph::TransportError| error.to_string())

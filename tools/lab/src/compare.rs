@@ -1,10 +1,14 @@
 //! Comparing graphs: how long each takes, how far from the truth it is then, and whether the difference is more than chance.
 
+pub mod bench;
 pub mod budget;
 pub mod error;
+pub mod evaluate;
+pub mod judge;
 pub mod observer;
 pub mod reference;
 pub mod report;
+pub mod scene;
 pub mod store;
 pub mod subject;
 pub mod summary;

@@ -6,7 +6,7 @@ use crate::{
     failure::Failure,
     interrupt,
     progress::{Goal, Progress, State},
-    source::{GraphArgs, SceneArgs},
+    source::{GraphArgs, SceneArgs, text_of},
     ui::Ui,
     value,
 };
@@ -151,10 +151,4 @@ impl Args {
         }
         Ok(())
     }
-}
-
-/// Every text that the graph was read from: its files, then what the command line laid over them.
-fn text_of(graph: &Graph) -> String {
-    let part = |source: &aquifer_graph::Source| format!("# {}\n{}\n", source.name, source.text.trim_end());
-    graph.sources().iter().map(part).collect::<Vec<_>>().join("\n")
 }

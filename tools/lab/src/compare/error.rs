@@ -39,21 +39,6 @@ pub enum CompareError {
     /// Two parts of a reference do not belong together.
     #[error("the reference in the cache cannot be extended: {0}")]
     Merge(#[from] crate::film::MergeError),
-    /// Graphs that hold different light paths.
-    #[error(
-        "`{first}` holds {first_transport} light and `{second}` holds {second_transport}: only like is compared with like \
-         (--transport sets both, --force compares them all the same)"
-    )]
-    Unlike {
-        /// A graph.
-        first: String,
-        /// What it holds.
-        first_transport: String,
-        /// Another.
-        second: String,
-        /// What that holds.
-        second_transport: String,
-    },
     /// The user asked to stop.
     #[error("interrupted: the same command goes on from here")]
     Interrupted,

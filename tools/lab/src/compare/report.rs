@@ -57,7 +57,7 @@ pub struct Made {
 }
 
 /// What was measured.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Protocol {
     /// One frame after `warm_up` frames.
@@ -91,6 +91,31 @@ pub enum Protocol {
         /// As in `Frame`.
         centred: bool,
     },
+}
+
+impl Protocol {
+    /// Frames before the first that counts.
+    pub fn warm_up(self) -> u32 {
+        match self {
+            Self::Frame { warm_up, .. } | Self::Accumulate { warm_up, .. } => warm_up,
+            Self::Trace { .. } => 0,
+        }
+    }
+
+    /// Independent repetitions.
+    pub fn seeds(self) -> u32 {
+        match self {
+            Self::Frame { seeds, .. } | Self::Accumulate { seeds, .. } | Self::Trace { seeds, .. } => seeds,
+        }
+    }
+
+    /// The same for any number of repetitions: more of them go on with those that are done.
+    pub fn without_seeds(mut self) -> Self {
+        match &mut self {
+            Self::Frame { seeds, .. } | Self::Accumulate { seeds, .. } | Self::Trace { seeds, .. } => *seeds = 0,
+        }
+        self
+    }
 }
 
 impl Default for Protocol {

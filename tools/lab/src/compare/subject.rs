@@ -117,6 +117,11 @@ impl Subject {
         names.zip(self.counted.iter().copied()).collect()
     }
 
+    /// Stands still at another time of the animation.
+    pub fn set_time(&mut self, time: f32) {
+        self.renderer.set_time(time, 0.0);
+    }
+
     /// Milliseconds of a shot's passes that count.
     pub fn time_of(&self, shot: &Shot) -> Option<f64> {
         let counted = shot.passes.iter().zip(&self.counted).filter(|(_, counted)| **counted);

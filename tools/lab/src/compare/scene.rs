@@ -1,0 +1,381 @@
+//! One scene from beginning to end: measured, held against references, judged.
+
+use super::{
+    bench::{Bench, Entrant},
+    error::CompareError,
+    evaluate::{Rounds, Truth, cell_name},
+    judge,
+    observer::Observer,
+    reference::{Content, Reference, Tracer, shaders},
+    report::{Cell, Protocol, ReferenceFacts, SceneResult},
+    store::{Round, Store, make_folder},
+    subject::Stage,
+};
+use crate::{
+    film::Film,
+    stats::{ensemble::Ensemble, error::EPSILON},
+};
+use aquifer_graph::{Document, Transport};
+use std::path::PathBuf;
+
+/// What a comparison was asked for.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// What is measured.
+    pub protocol: Protocol,
+    /// Milliseconds for every graph that can be given more or less; `None` takes the time of those that cannot.
+    pub budget_ms: Option<f64>,
+    /// Of all random numbers.
+    pub seed: u64,
+    /// How much of the smallest error may be the reference's own.
+    pub reference_share: f64,
+    /// The most samples of a reference.
+    pub reference_samples: u64,
+    /// The path tracer, for references.
+    pub path_tracer: Document,
+    /// Where references are kept.
+    pub cache: PathBuf,
+    /// Where everything else goes.
+    pub folder: PathBuf,
+}
+
+/// Folder of images beside the report.
+const IMAGES: &str = "images";
+
+/// The scene's names.
+#[derive(Clone, Debug, Default)]
+pub struct SceneFacts {
+    /// Short and unique.
+    pub name: String,
+    /// As films name it.
+    pub identity: String,
+    /// A text that changes whenever the scene's content does.
+    pub content: String,
+    /// The environment over the scene's own.
+    pub environment: Option<String>,
+    /// The camera.
+    pub camera: String,
+}
+
+/// A scene's figures with what they cost.
+pub struct Compared {
+    /// The figures.
+    pub result: SceneResult,
+    /// What readers must know.
+    pub warnings: Vec<String>,
+    /// Seconds of rendering what was measured.
+    pub seconds: f64,
+    /// Seconds of films and files meanwhile.
+    pub lab_seconds: f64,
+    /// Who held the watch.
+    pub clock: aquifer_render::Clock,
+}
+
+/// Measures and judges.
+///
+/// # Errors
+/// Whatever a graph, the device or the disk refuses. What was measured until then is kept, and a second call goes on from there.
+pub fn compare_scene(
+    stage: &Stage,
+    entrants: &[Entrant],
+    facts: &SceneFacts,
+    request: &Request,
+    observer: &mut dyn Observer,
+) -> Result<Compared, CompareError> {
+    let store = Store::open(request.folder.join("measured").join(state_name(stage, entrants, facts, request)?))?;
+    let mut bench = Bench::new(stage, entrants, request.protocol, request.budget_ms, request.seed, &store)?;
+    let settled = bench.settle(observer)?;
+    let rounds = measure(&mut bench, &settled, &store, request.protocol.seeds(), &facts.name, observer)?;
+    let measured = Rounds { store: &store, settled: &settled, rounds: &rounds };
+    let mut scene = Scene { stage, entrants, facts, request, bench: &bench, measured, warnings: Vec::new() };
+    let result = scene.evaluate(observer)?;
+    Ok(Compared {
+        result,
+        warnings: scene.warnings,
+        seconds: rounds.iter().map(|round| round.seconds).sum(),
+        lab_seconds: rounds.iter().map(|round| round.lab_seconds).sum(),
+        clock: bench.as_written(0).clock(),
+    })
+}
+
+/// Names what is measured: another graph, scene, size, protocol, seed, adapter or shader is another folder.
+fn state_name(stage: &Stage, entrants: &[Entrant], facts: &SceneFacts, request: &Request) -> Result<String, CompareError> {
+    let mut text = format!(
+        "{} {:?} {} {:?} {} {} {:?} {} {} {} {}",
+        facts.content,
+        facts.environment,
+        facts.camera,
+        stage.size,
+        stage.time,
+        stage.step,
+        request.protocol.without_seeds(),
+        stage.centred,
+        request.seed,
+        request.budget_ms.map_or(0.0, |ms| ms),
+        stage.context.adapter().name,
+    );
+    for entrant in entrants {
+        let graph = stage.graph(&entrant.document, None)?;
+        let plan = graph.plan(&aquifer_graph::NeedsAll, &[])?;
+        text += &format!("\n{} {}", graph.digest(), shaders(stage, &plan));
+    }
+    Ok(format!("{}-{}", facts.name, &blake3::hash(text.as_bytes()).to_hex()[..12]))
+}
+
+fn measure(
+    bench: &mut Bench<'_>,
+    settled: &super::store::Settled,
+    store: &Store,
+    seeds: u32,
+    scene: &str,
+    observer: &mut dyn Observer,
+) -> Result<Vec<Round>, CompareError> {
+    let mut rounds = Vec::new();
+    for number in 0..seeds {
+        observer.progress(&format!("{scene}: rounds of all graphs"), number.into(), seeds.into());
+        rounds.push(match store.round(number) {
+            Some(round) => round,
+            None => bench.round(number, settled, observer)?,
+        });
+    }
+    Ok(rounds)
+}
+
+struct Scene<'a> {
+    stage: &'a Stage,
+    entrants: &'a [Entrant],
+    facts: &'a SceneFacts,
+    request: &'a Request,
+    bench: &'a Bench<'a>,
+    measured: Rounds<'a>,
+    warnings: Vec<String>,
+}
+
+impl Scene<'_> {
+    fn evaluate(&mut self, observer: &mut dyn Observer) -> Result<SceneResult, CompareError> {
+        make_folder(&self.images())?;
+        let mut result = SceneResult {
+            name: self.facts.name.clone(),
+            identity: self.facts.identity.clone(),
+            environment: self.facts.environment.clone(),
+            camera: self.facts.camera.clone(),
+            animation_time: self.stage.time,
+            size: self.stage.size,
+            ..SceneResult::default()
+        };
+        let mut cells: Vec<Option<Cell>> = vec![None; self.measured.settled.cells.len()];
+        for transport in self.transports() {
+            let members = self.members(transport);
+            let reference = result.references.len();
+            for (index, cell) in self.evaluate_transport(transport, &members, observer, &mut result.references)? {
+                cells[index] = Some(Cell { reference, ..cell });
+            }
+        }
+        result.cells = cells.into_iter().flatten().collect();
+        self.write_images(&mut result.cells)?;
+        let names: Vec<String> = self.entrants.iter().map(|entrant| entrant.name.clone()).collect();
+        result.pairs = judge::pairs(&result.cells, &names);
+        self.warn_of(&result);
+        Ok(result)
+    }
+
+    fn transports(&self) -> Vec<Transport> {
+        let mut transports = Vec::new();
+        for graph in 0..self.entrants.len() {
+            let transport = self.bench.as_written(graph).graph().transport();
+            if !transports.contains(&transport) {
+                transports.push(transport);
+            }
+        }
+        transports
+    }
+
+    /// Cells whose graphs hold these light paths.
+    fn members(&self, transport: Transport) -> Vec<usize> {
+        let cells = self.measured.settled.cells.iter().enumerate();
+        cells.filter(|(_, cell)| self.bench.as_written(cell.graph).graph().transport() == transport).map(|(index, _)| index).collect()
+    }
+
+    /// Figures of all cells of one transport, and the reference they were measured against.
+    fn evaluate_transport(
+        &mut self,
+        transport: Transport,
+        members: &[usize],
+        observer: &mut dyn Observer,
+        references: &mut Vec<ReferenceFacts>,
+    ) -> Result<Vec<(usize, Cell)>, CompareError> {
+        let traced = matches!(self.request.protocol, Protocol::Trace { .. });
+        let takes = members.iter().map(|&cell| self.measured.takes(cell)).min().unwrap_or(0);
+        let mut curves = vec![Vec::new(); members.len()];
+        // The takes of a trace are of different times, each with a reference of its own; all others share one.
+        if traced {
+            for take in 0..takes.saturating_sub(1) {
+                let at: Vec<(usize, usize)> = members.iter().map(|&cell| (cell, take)).collect();
+                let time = self.time_of(take);
+                let (film, facts) = self.reference(transport, time, &at, observer)?;
+                let truth = Truth { film: &film, black: facts.black };
+                for (&(cell, take), curve) in at.iter().zip(&mut curves) {
+                    curve.push(self.measured.point(cell, take, self.figures(cell, take, &truth)?, time));
+                }
+            }
+        }
+        let at: Vec<(usize, usize)> = members.iter().map(|&cell| (cell, self.measured.takes(cell) - 1)).collect();
+        let time = if traced { self.time_of(takes.saturating_sub(1)) } else { self.stage.time };
+        let (film, facts) = self.reference(transport, time, &at, observer)?;
+        let truth = Truth { film: &film, black: facts.black };
+        let mut cells = Vec::new();
+        for (&(index, take), mut curve) in at.iter().zip(curves) {
+            let earlier = if traced { take..take } else { 0..take };
+            for take in earlier {
+                curve.push(self.measured.point(index, take, self.figures(index, take, &truth)?, time));
+            }
+            let cell = self.figures(index, take, &truth)?;
+            if self.measured.takes(index) > 1 {
+                curve.push(self.measured.point(index, take, cell.clone(), time));
+            }
+            cells.push((index, Cell { curve, ..cell }));
+        }
+        let name = format!("reference_{}.exr", file_name(&facts.transport));
+        film.write(&self.images().join(&name))?;
+        references.push(ReferenceFacts { image: self.image_name(&name), ..facts });
+        Ok(cells)
+    }
+
+    /// The folder of this scene's images.
+    fn images(&self) -> PathBuf {
+        self.request.folder.join(IMAGES).join(&self.facts.name)
+    }
+
+    /// As the report names an image.
+    fn image_name(&self, name: &str) -> String {
+        format!("{IMAGES}/{}/{name}", self.facts.name)
+    }
+
+    /// The first seed's film of every cell, and the mean over seeds.
+    fn write_images(&self, cells: &mut [Cell]) -> Result<(), CompareError> {
+        for (index, cell) in cells.iter_mut().enumerate() {
+            let films = self.measured.films(index, cell, self.measured.takes(index) - 1)?;
+            let name = file_name(&cell_name(cell, self.entrants));
+            let mut mean = Ensemble::default();
+            for film in &films {
+                mean.push(film)?;
+            }
+            let (one, all) = (format!("{name}.exr"), format!("{name}.mean.exr"));
+            films[0].write(&self.images().join(&one))?;
+            mean.film().write(&self.images().join(&all))?;
+            (cell.image, cell.mean_image) = (Some(self.image_name(&one)), Some(self.image_name(&all)));
+        }
+        Ok(())
+    }
+
+    /// What a reader of the figures must know.
+    fn warn_of(&mut self, result: &SceneResult) {
+        let scene = &result.name;
+        for reference in &result.references {
+            if reference.black {
+                self.warnings.push(format!("{scene}: the reference holds no light: relative metrics are undefined"));
+            }
+            if let Some(share) = reference.share.filter(|share| *share > self.request.reference_share) {
+                self.warnings.push(format!(
+                    "{scene}: the reference's own variance is {} of the smallest error after {} samples: --reference-samples allows more",
+                    percent(share),
+                    reference.samples
+                ));
+            }
+        }
+        for pair in result.pairs.iter().filter(|pair| !pair.equal_time) {
+            let name = |cell: usize| &self.entrants[result.cells[cell].graph].name;
+            self.warnings.push(format!(
+                "{scene}: `{}` takes {:.2} times as long as `{}`: times could not be made equal",
+                name(pair.other),
+                pair.time.value,
+                name(pair.baseline)
+            ));
+        }
+    }
+
+    fn figures(&self, cell: usize, take: usize, truth: &Truth<'_>) -> Result<Cell, CompareError> {
+        let graph = self.measured.settled.cells[cell].graph;
+        self.measured.cell(cell, take, truth, &self.bench.as_written(graph).passes())
+    }
+
+    /// Seconds into the animation of a trace's frame.
+    fn time_of(&self, take: usize) -> f32 {
+        (f64::from(self.stage.time) + f64::from(self.stage.step) * take as f64) as f32
+    }
+
+    /// A reference good enough for these cells and takes, as far as the samples allowed make it so.
+    fn reference(
+        &mut self,
+        transport: Transport,
+        time: f32,
+        at: &[(usize, usize)],
+        observer: &mut dyn Observer,
+    ) -> Result<(Film, ReferenceFacts), CompareError> {
+        let request = self.request;
+        let mut tracer = Tracer::new(self.stage, &request.path_tracer, transport, time)?;
+        let facts = self.facts;
+        let content = Content { scene: &facts.content, environment: facts.environment.as_deref(), camera: &facts.camera };
+        let mut reference = Reference::open(&request.cache, self.stage, &tracer, &content, time, observer);
+        let mut wanted = reference.samples().max(1);
+        loop {
+            while reference.samples() < wanted.min(request.reference_samples).max(1) {
+                if observer.stop() {
+                    return Err(CompareError::Interrupted);
+                }
+                observer.progress(&format!("{}: reference ({transport})", facts.name), reference.samples(), wanted);
+                reference.extend(self.stage, &mut tracer, &content)?;
+            }
+            let film = reference.film().expect("at least one chunk was rendered").clone();
+            let figures = self.facts_of(&reference, &film, at)?;
+            let enough = figures.share.is_none_or(|share| share <= request.reference_share);
+            if enough || reference.samples() >= request.reference_samples {
+                return Ok((film, figures));
+            }
+            // Variance falls as 1/samples; a tenth more makes up for what the estimate of the error may still lack.
+            let more = figures.share.unwrap_or(1.0) / request.reference_share * 1.1;
+            wanted = (reference.samples() as f64 * more.min(64.0)).ceil() as u64;
+        }
+    }
+
+    fn facts_of(&self, reference: &Reference, film: &Film, at: &[(usize, usize)]) -> Result<ReferenceFacts, CompareError> {
+        let variance = film
+            .variance
+            .as_ref()
+            .map_or(0.0, |variance| variance.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3.0 * film.pixels() as f64));
+        let weighted = |(v, r): (&f32, &f32)| f64::from(*v) / (f64::from(*r).powi(2) + EPSILON);
+        let rel_variance = film.variance.as_ref().map_or(0.0, |variance| {
+            variance.iter().flatten().zip(film.color.iter().flatten()).map(weighted).sum::<f64>() / (3.0 * film.pixels() as f64)
+        });
+        let black = film.color.iter().flatten().all(|value| *value == 0.0);
+        let mut least = f64::INFINITY;
+        for &(cell, take) in at {
+            let errors = self.measured.errors(cell, take, film)?;
+            least = errors
+                .iter()
+                .map(|seeds| super::summary::median(&seeds.iter().map(|error| error.mse).collect::<Vec<_>>()))
+                .fold(least, f64::min);
+        }
+        // An error that the reference's noise hides wholly has no share: it is more than all.
+        let share = (variance > 0.0).then(|| if least > 0.0 { variance / least } else { f64::MAX });
+        Ok(ReferenceFacts {
+            transport: reference.transport().to_string(),
+            image: String::new(),
+            hash: reference.hash(),
+            samples: reference.samples(),
+            variance,
+            rel_variance,
+            share,
+            black,
+        })
+    }
+}
+
+/// A name that any file system takes.
+fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '_' }).collect()
+}
+
+fn percent(share: f64) -> String {
+    if share >= 10.0 { "more than 1000 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
+}
