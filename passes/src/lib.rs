@@ -2,13 +2,15 @@
 //!
 //! [`library`] holds the WGSL tree; [`registry`] cuts it to what a scene holds.
 
+mod gbuffer;
+
 use aquifer_render::{Error, PassKind, Registry, SceneGlobals};
 use aquifer_scene::{Features, Scene};
 use aquifer_shader::Library;
 use std::{collections::BTreeSet, sync::Arc};
 
 /// Passes with host code, one file each. All others are files of `shaders/pass` and need no word here.
-pub const KINDS: &[PassKind] = &[];
+pub const KINDS: &[PassKind] = &[gbuffer::KIND];
 
 /// The module of sizes that come from the scene.
 pub const LIMITS: &str = "scene/limits";

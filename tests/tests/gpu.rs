@@ -6,6 +6,8 @@ mod closed_forms;
 mod determinism;
 #[path = "gpu/furnace.rs"]
 mod furnace;
+#[path = "gpu/gbuffer.rs"]
+mod gbuffer;
 #[path = "gpu/moving.rs"]
 mod moving;
 #[path = "gpu/sampling.rs"]

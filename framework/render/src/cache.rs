@@ -7,9 +7,9 @@ use std::{
 
 /// A pipeline with the layouts that its bind groups need.
 #[derive(Debug)]
-pub(crate) struct Pipeline {
-    pub pipeline: wgpu::ComputePipeline,
-    /// By group; `None` where the entry point reaches nothing of it.
+pub(crate) struct Pipeline<P> {
+    pub pipeline: P,
+    /// By group; `None` where the entry points reach nothing of it.
     pub layouts: Vec<Option<wgpu::BindGroupLayout>>,
 }
 
@@ -19,13 +19,8 @@ const IDLE: usize = 256;
 #[derive(Debug, Default)]
 pub(crate) struct PipelineCache {
     modules: Mutex<HashMap<blake3::Hash, wgpu::ShaderModule>>,
-    pipelines: Mutex<HashMap<blake3::Hash, Entry>>,
-}
-
-#[derive(Debug)]
-struct Entry {
-    pipeline: Arc<Pipeline>,
-    used: u64,
+    pub compute: Kept<wgpu::ComputePipeline>,
+    pub render: Kept<wgpu::RenderPipeline>,
 }
 
 impl PipelineCache {
@@ -40,17 +35,28 @@ impl PipelineCache {
         modules.insert(key, module.clone());
         Ok(module)
     }
+}
 
+/// Pipelines of one kind.
+#[derive(Debug)]
+pub(crate) struct Kept<P>(Mutex<HashMap<blake3::Hash, Entry<P>>>);
+
+impl<P> Default for Kept<P> {
+    fn default() -> Self {
+        Kept(Mutex::default())
+    }
+}
+
+#[derive(Debug)]
+struct Entry<P> {
+    pipeline: Arc<Pipeline<P>>,
+    used: u64,
+}
+
+impl<P> Kept<P> {
     /// The pipeline of this specialisation, made by `make` when it is the first.
-    pub fn pipeline<E>(
-        &self,
-        text: &str,
-        entry: &str,
-        constants: &[(String, f64)],
-        make: impl FnOnce() -> Result<Pipeline, E>,
-    ) -> Result<Arc<Pipeline>, E> {
-        let key = key(text, entry, constants);
-        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+    pub fn pipeline<E>(&self, key: blake3::Hash, make: impl FnOnce() -> Result<Pipeline<P>, E>) -> Result<Arc<Pipeline<P>>, E> {
+        let mut pipelines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let now = pipelines.values().map(|entry| entry.used).max().unwrap_or(0) + 1;
         if let Some(entry) = pipelines.get_mut(&key) {
             entry.used = now;
@@ -63,7 +69,7 @@ impl PipelineCache {
     }
 }
 
-fn forget_oldest(pipelines: &mut HashMap<blake3::Hash, Entry>) {
+fn forget_oldest<P>(pipelines: &mut HashMap<blake3::Hash, Entry<P>>) {
     let idle = pipelines.iter().filter(|(_, entry)| Arc::strong_count(&entry.pipeline) == 1);
     let mut idle: Vec<_> = idle.map(|(key, entry)| (entry.used, *key)).collect();
     idle.sort_unstable_by_key(|(used, _)| std::cmp::Reverse(*used));
@@ -72,13 +78,14 @@ fn forget_oldest(pipelines: &mut HashMap<blake3::Hash, Entry>) {
     }
 }
 
-/// Layouts follow from the text and the entry point, so they need no part in the key. Lengths keep neighbouring parts apart.
-fn key(text: &str, entry: &str, constants: &[(String, f64)]) -> blake3::Hash {
+/// Of a specialisation. Layouts and formats follow from the text and the entry points, so they need no part in it. Lengths keep neighbouring
+/// parts apart.
+pub(crate) fn key(text: &str, entries: &[&str], constants: &[(String, f64)]) -> blake3::Hash {
     let mut sorted: Vec<_> = constants.iter().collect();
     sorted.sort_by(|a, b| a.0.cmp(&b.0));
     let mut hasher = blake3::Hasher::new();
     let names = sorted.iter().map(|(name, _)| name.as_str());
-    for part in [text, entry].into_iter().chain(names) {
+    for part in [text].into_iter().chain(entries.iter().copied()).chain(names) {
         hasher.update(&(part.len() as u64).to_le_bytes()).update(part.as_bytes());
     }
     for (_, value) in sorted {
@@ -96,9 +103,15 @@ mod tests {
         let constant = |name: &str, value| (name.to_owned(), value);
         let ab = [constant("a", 1.0), constant("b", 2.0)];
         let ba = [constant("b", 2.0), constant("a", 1.0)];
-        assert_eq!(key("t", "e", &ab), key("t", "e", &ba));
-        let others =
-            [key("te", "", &[]), key("t", "e", &[]), key("", "te", &[]), key("t", "e", &ab[..1]), key("t", "e", &[constant("a", 2.0)])];
+        assert_eq!(key("t", &["e"], &ab), key("t", &["e"], &ba));
+        let others = [
+            key("te", &[""], &[]),
+            key("t", &["e"], &[]),
+            key("", &["te"], &[]),
+            key("t", &["", "e"], &[]),
+            key("t", &["e"], &ab[..1]),
+            key("t", &["e"], &[constant("a", 2.0)]),
+        ];
         for (index, one) in others.iter().enumerate() {
             assert!(others[..index].iter().all(|other| other != one), "{index}");
         }

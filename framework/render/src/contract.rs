@@ -1,12 +1,16 @@
 //! From what reflection found to what the graph may know: ports, parameters, bias.
 
-use crate::params::{LIVE, STAGE};
+use crate::{
+    params::{LIVE, STAGE},
+    targets::outputs,
+};
 use aquifer_graph::{Bias, Contract, Direction, Extent, Param, Port, Value, WireType};
 use aquifer_shader::{Binding, Interface, Layout, Member, Override, ResourceKind, Scalar};
 
 /// The contract of a shader; the text of an error names what is wrong in it.
 pub(crate) fn contract(interface: &Interface) -> Result<Contract, String> {
     let own = interface.bindings.iter().filter(|binding| binding.group == 1);
+    let drawn: Vec<&str> = outputs(interface).iter().map(|output| output.name.as_str()).collect();
     let mut contract = Contract {
         about: first_sentence(&interface.manual),
         slots: interface.slots.iter().map(|(slot, _)| slot.clone()).collect(),
@@ -20,6 +24,8 @@ pub(crate) fn contract(interface: &Interface) -> Result<Contract, String> {
             ResourceKind::Uniform { ty } if binding.name == LIVE => {
                 live_params(ty, slot_of(interface, &binding.module), &mut contract)?;
             }
+            // An image of the pass's own, which its fragment entry points draw.
+            ResourceKind::Texture { .. } if drawn.contains(&binding.name.as_str()) => {}
             _ => contract.ports.push(port(binding)?),
         }
     }
@@ -66,7 +72,8 @@ fn port(binding: &Binding) -> Result<Port, String> {
         ResourceKind::Storage { ty, .. } => (ty, ty.size.next_multiple_of(ty.align.max(1)), Extent::Fixed(1)),
         _ => {
             return Err(format!(
-                "{}: `{}` in group 1 is no port: ports are storage buffers, and the one uniform is `{LIVE}`",
+                "{}: `{}` in group 1 is no port: ports are storage buffers, the one uniform is `{LIVE}`, and textures are what a fragment \
+                 entry point of the same shader gives under the same name",
                 binding.module, binding.name
             ));
         }

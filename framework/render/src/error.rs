@@ -106,14 +106,16 @@ pub enum Error {
         /// Why.
         source: crate::PassError,
     },
-    /// The shader has no compute entry point of that name.
-    #[error("`{shader}` has no compute entry point `{entry}`; there are: {}", known.join(", "))]
+    /// The shader has no entry point of that stage and name.
+    #[error("`{shader}` has no {stage} entry point `{entry}`; there are: {}", known.join(", "))]
     NoEntry {
         /// The shader's label.
         shader: String,
+        /// `compute`, `vertex` or `fragment`.
+        stage: &'static str,
         /// As asked.
         entry: String,
-        /// All compute entry points.
+        /// All entry points of that stage.
         known: Vec<String>,
     },
     /// Nothing was given for a binding.

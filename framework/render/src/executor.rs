@@ -1,4 +1,4 @@
-//! A plan on a device: one wgpu pass and one submission a step, so that each can be timed, and named when it hangs.
+//! A plan on a device: one submission a step, so that each can be timed, and named when it hangs.
 
 use crate::{
     Context, Error, Frame, FrameInfo, Globals, MemoryReport, Registry, Startup, Timings, limits, node,
@@ -17,6 +17,7 @@ pub(crate) struct Executor {
     plan: Plan,
     nodes: Vec<Node>,
     pool: Pool,
+    memory: MemoryReport,
     stamps: Option<Stamps>,
     watch: Stopwatch,
     flights: VecDeque<Flight>,
@@ -44,17 +45,18 @@ impl Executor {
         let known = known.collect::<Result<Vec<_>, Error>>()?;
         let composed = Instant::now();
         limits::check(&plan, known.iter().map(|known| &known.composed), size, context.limits())?;
-        let kernels = plan.steps.iter().zip(&known).map(|(step, known)| node::compile(context, step, known));
-        let kernels = kernels.collect::<Result<Vec<_>, Error>>()?;
+        let programs = plan.steps.iter().zip(&known).map(|(step, known)| node::compile(context, step, known));
+        let programs = programs.collect::<Result<Vec<_>, Error>>()?;
         let compiled = Instant::now();
         let pool = Pool::new(context, &plan, size, poison)?;
         let mut nodes = Vec::new();
-        for (index, (known, kernels)) in known.iter().zip(kernels).enumerate() {
+        for (index, (known, programs)) in known.iter().zip(programs).enumerate() {
             let (step, memory) = (&plan.steps[index], Memory { pool: &pool, size });
             let kind = registry.kind(&step.kind).map_err(|source| contract(&step.node, source))?;
             let pass = (kind.build)(step).map_err(|source| Error::Pass { pass: step.node.clone(), source })?;
-            nodes.push(Node { pass, work: Work::new(context, &plan, index, known, kernels, memory)? });
+            nodes.push(Node { pass, work: Work::new(context, &plan, index, known, programs, memory)? });
         }
+        let memory = pool.report().with(nodes.iter().flat_map(|node: &Node| node.work.images()));
         let stamps = Stamps::new(context, nodes.len())?;
         let clock = if stamps.is_some() { Clock::Timestamps } else { Clock::Wall };
         let names = plan.steps.iter().map(|step| step.node.clone()).collect();
@@ -64,6 +66,7 @@ impl Executor {
             plan,
             nodes,
             pool,
+            memory,
             stamps,
             watch: Stopwatch::new(clock, names),
             flights: VecDeque::new(),
@@ -124,10 +127,10 @@ impl Executor {
         let recorded = context.guard(&name, || {
             let mut encoder = context.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
             work.record_before(&mut encoder, pool, parity);
-            let timestamp_writes = stamps.as_ref().map(|stamps| stamps.writes(index));
-            let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes }).forget_lifetime();
-            let outcome = pass.record(&mut Frame { info, work, compute: &mut compute, parity });
-            drop(compute);
+            let mut frame = Frame { info, work, scene: globals.batches(), jobs: Vec::new() };
+            let outcome = pass.record(&mut frame);
+            let jobs = frame.jobs;
+            work.record(&mut encoder, &jobs, parity, stamps.as_ref(), index);
             if let (Some(stamps), true) = (stamps, resolve) {
                 stamps.record_resolve(&mut encoder, slot);
             }
@@ -233,7 +236,7 @@ impl Executor {
     }
 
     pub fn memory(&self) -> &MemoryReport {
-        self.pool.report()
+        &self.memory
     }
 
     /// What passes have to say, by name.

@@ -1,6 +1,6 @@
 //! What every pass shares: group 0, found by qualified name.
 
-use crate::{Context, Error};
+use crate::{Batch, Context, Error};
 
 /// Where a frame stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +28,11 @@ pub trait Globals: Send {
 
     /// Goes to another time of what moves, from the next frame on: seconds at frame 0, and from one frame to the next.
     fn set_time(&mut self, _time: f32, _step: f32) {}
+
+    /// The triangles that [`crate::Frame::scene`] gives to passes that draw.
+    fn batches(&self) -> &[Batch] {
+        &[]
+    }
 
     /// A number that changes whenever [`Globals::resource`] begins to answer with other resources: bind groups are then made anew.
     fn generation(&self) -> u64 {

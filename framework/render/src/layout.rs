@@ -1,21 +1,45 @@
 //! Bind group layouts from reflection: no binding number is written by hand.
 
-use aquifer_shader::{Binding, Composed, ResourceKind};
+use aquifer_shader::{Binding, Composed, Entry, ResourceKind, Stage};
 use std::num::NonZeroU64;
 
 /// Groups that a shader may use: 0 is the frame's and the scene's, 1 the pass's own.
 pub(crate) const GROUPS: u32 = 2;
 
-/// The layout of one group, for the bindings that one entry point reaches.
-pub(crate) fn entries(composed: &Composed, bindings: &[Binding], group: u32) -> Vec<wgpu::BindGroupLayoutEntry> {
+/// A binding with the stages that reach it.
+pub(crate) struct Reached<'a> {
+    pub binding: &'a Binding,
+    stages: wgpu::ShaderStages,
+}
+
+/// What the entry points of one pipeline reach, in the order of reflection.
+pub(crate) fn reached<'a>(composed: &'a Composed, entries: &[&Entry]) -> Vec<Reached<'a>> {
+    let stages = |index: usize| {
+        let reaching = entries.iter().filter(|entry| entry.bindings.contains(&index));
+        reaching.fold(wgpu::ShaderStages::NONE, |stages, entry| stages | stage(entry.stage))
+    };
+    let all = composed.interface.bindings.iter().enumerate().map(|(index, binding)| Reached { binding, stages: stages(index) });
+    all.filter(|reached| !reached.stages.is_empty()).collect()
+}
+
+fn stage(stage: Stage) -> wgpu::ShaderStages {
+    match stage {
+        Stage::Compute => wgpu::ShaderStages::COMPUTE,
+        Stage::Vertex => wgpu::ShaderStages::VERTEX,
+        Stage::Fragment => wgpu::ShaderStages::FRAGMENT,
+    }
+}
+
+/// The layout of one group.
+pub(crate) fn entries(composed: &Composed, reached: &[Reached<'_>], group: u32) -> Vec<wgpu::BindGroupLayoutEntry> {
     // A texture can be declared filterable only when its format is; sampling needs a sampler, loading does not.
-    let sampled = bindings.iter().any(|binding| binding.resource == ResourceKind::Sampler);
-    let of_group = bindings.iter().filter(|binding| binding.group == group);
-    let entry = |binding: &Binding| {
+    let sampled = reached.iter().any(|reached| reached.binding.resource == ResourceKind::Sampler);
+    let of_group = reached.iter().filter(|reached| reached.binding.group == group);
+    let entry = |reached: &Reached<'_>| {
         Some(wgpu::BindGroupLayoutEntry {
-            binding: binding.binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: ty(composed, binding, sampled)?,
+            binding: reached.binding.binding,
+            visibility: reached.stages,
+            ty: ty(composed, reached.binding, sampled)?,
             count: None,
         })
     };

@@ -120,10 +120,12 @@ fn unwired_fit(step: &Step, size: [u32; 2], limits: &wgpu::Limits) -> Result<(),
 }
 
 fn entries_fit(node: &str, interface: &Interface, limits: &wgpu::Limits) -> Result<(), Error> {
-    for entry in interface.entries.iter().filter(|entry| entry.stage == Stage::Compute) {
+    for entry in &interface.entries {
         let what = format!("entry point `{}` of pass `{node}`", entry.name);
         bindings_fit(&what, entry, interface, limits)?;
-        workgroup_fits(&what, entry.workgroup_size, limits)?;
+        if entry.stage == Stage::Compute {
+            workgroup_fits(&what, entry.workgroup_size, limits)?;
+        }
     }
     Ok(())
 }

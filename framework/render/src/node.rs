@@ -1,16 +1,21 @@
-//! One step of a plan, ready to run: kernels, bind groups, live parameters.
+//! One step of a plan, ready to run: kernels, drawings, bind groups, live parameters.
 
 use crate::{
-    Context, Error, Globals, Kernel, Pass, PassError,
+    Batch, Context, Error, Globals, Kernel, Pass, PassError, ResourceMemory,
+    drawing::Drawing,
     limits::{covered, workgroups},
     params::{self, LIVE, LiveParams},
+    pass::Job,
     pool::{self, Pool},
+    program,
     registry::Known,
+    stamps::{Stamp, Stamps},
+    targets::Targets,
 };
 use aquifer_graph::{Direction, Plan, ResourceHalf, Step, Value, When};
-use aquifer_shader::{Binding, Stage};
+use aquifer_shader::{Binding, Entry, Stage};
 
-/// A pass with what it dispatches.
+/// A pass with what it dispatches and draws.
 pub(crate) struct Node {
     pub pass: Box<dyn Pass>,
     pub work: Work,
@@ -19,7 +24,11 @@ pub(crate) struct Node {
 /// All of a node but its decisions.
 pub(crate) struct Work {
     name: String,
-    kernels: Vec<Ready>,
+    kernels: Vec<Ready<Kernel>>,
+    drawings: Vec<Ready<Drawing>>,
+    /// Workgroups that cover what each kernel writes.
+    workgroups: Vec<[u32; 3]>,
+    targets: Targets,
     live: Option<Live>,
     /// What the node writes in full.
     outputs: Vec<ResourceHalf>,
@@ -29,9 +38,9 @@ pub(crate) struct Work {
     generation: Option<u64>,
 }
 
-struct Ready {
-    kernel: Kernel,
-    workgroups: [u32; 3],
+/// A kernel or a drawing with its bind groups.
+struct Ready<P> {
+    program: P,
     globals: Option<wgpu::BindGroup>,
     /// By parity of the frame.
     own: [Option<wgpu::BindGroup>; 2],
@@ -61,40 +70,55 @@ impl<'a> Memory<'a> {
     }
 }
 
-/// Compiles every compute entry point of a step.
-pub(crate) fn compile(context: &Context, step: &Step, known: &Known) -> Result<Vec<Kernel>, Error> {
+/// What a step's shader was compiled to.
+pub(crate) struct Compiled {
+    kernels: Vec<Kernel>,
+    drawings: Vec<Drawing>,
+}
+
+/// Compiles every compute and every fragment entry point of a step.
+pub(crate) fn compile(context: &Context, step: &Step, known: &Known) -> Result<Compiled, Error> {
     let constants = params::constants(step, &known.composed.interface);
-    let compute = known.composed.interface.entries.iter().filter(|entry| entry.stage == Stage::Compute);
-    compute.map(|entry| Kernel::compute(context, &step.node, &known.composed, &entry.name, &constants)).collect()
+    let entries = |stage: Stage| known.composed.interface.entries.iter().filter(move |entry| entry.stage == stage);
+    let kernel = |entry: &Entry| Kernel::compute(context, &step.node, &known.composed, &entry.name, &constants);
+    let drawing = |entry: &Entry| Drawing::new(context, &step.node, &known.composed, entry, &constants);
+    Ok(Compiled {
+        kernels: entries(Stage::Compute).map(kernel).collect::<Result<_, Error>>()?,
+        drawings: entries(Stage::Fragment).map(drawing).collect::<Result<_, Error>>()?,
+    })
 }
 
 impl Work {
-    /// Binds the kernels of step `index` to the pool's memory.
-    pub fn new(
-        context: &Context,
-        plan: &Plan,
-        index: usize,
-        known: &Known,
-        kernels: Vec<Kernel>,
-        memory: Memory<'_>,
-    ) -> Result<Work, Error> {
+    /// Binds the kernels and drawings of step `index` to the pool's memory.
+    pub fn new(context: &Context, plan: &Plan, index: usize, known: &Known, compiled: Compiled, memory: Memory<'_>) -> Result<Work, Error> {
         let (step, interface) = (&plan.steps[index], &known.composed.interface);
         let live = live(context, step, known)?;
-        let ready = |kernel: Kernel| {
-            let entry = interface.entries.iter().find(|entry| entry.name == kernel.entry()).expect("kernels are made from these entries");
-            let workgroups = workgroups(&covered(entry, interface, step), memory.size, kernel.workgroup_size());
-            let bind = |parity| {
-                kernel.bind(context, 1, |binding| match &live {
-                    Some(live) if binding.name == LIVE => Some(live.buffer.as_entire_binding()),
-                    _ => memory.of(step, binding, parity),
-                })
-            };
-            let own = [bind(0)?, bind(1)?];
-            Ok(Ready { kernel, workgroups, globals: None, own })
+        let targets = Targets::new(context, &step.node, interface, memory.size)?;
+        let find = |binding: &Binding, parity| match &live {
+            Some(live) if binding.name == LIVE => Some(live.buffer.as_entire_binding()),
+            _ => memory.of(step, binding, parity).or_else(|| targets.view(&binding.name).map(wgpu::BindingResource::TextureView)),
+        };
+        let mut kernels = Vec::new();
+        for program in compiled.kernels {
+            let own = [0, 1].map(|parity| program.bind(context, 1, |binding| find(binding, parity)));
+            kernels.push(Ready::new(program, own)?);
+        }
+        let mut drawings = Vec::new();
+        for program in compiled.drawings {
+            let own = [0, 1].map(|parity| program.program().bind(context, 1, |binding| find(binding, parity)));
+            drawings.push(Ready::new(program, own)?);
+        }
+        let covering = |ready: &Ready<Kernel>| {
+            let entry =
+                interface.entries.iter().find(|entry| entry.name == ready.program.entry()).expect("kernels are made from these entries");
+            workgroups(&covered(entry, interface, step), memory.size, ready.program.workgroup_size())
         };
         Ok(Work {
             name: step.node.clone(),
-            kernels: kernels.into_iter().map(ready).collect::<Result<_, Error>>()?,
+            workgroups: kernels.iter().map(covering).collect(),
+            kernels,
+            drawings,
+            targets,
             live,
             outputs: outputs(step),
             cleared: cleared(plan, index),
@@ -108,8 +132,12 @@ impl Work {
         if self.generation == generation {
             return Ok(());
         }
+        let find = |binding: &Binding| globals.resource(&binding.module, &binding.name);
         for ready in &mut self.kernels {
-            ready.globals = ready.kernel.bind(context, 0, |binding| globals.resource(&binding.module, &binding.name))?;
+            ready.globals = ready.program.bind(context, 0, find)?;
+        }
+        for ready in &mut self.drawings {
+            ready.globals = ready.program.program().bind(context, 0, find)?;
         }
         self.generation = generation;
         Ok(())
@@ -143,30 +171,62 @@ impl Work {
         &self.name
     }
 
-    pub fn entries(&self) -> impl Iterator<Item = &str> {
-        self.kernels.iter().map(|ready| ready.kernel.entry())
+    /// Memory of the images that the node draws into.
+    pub fn images(&self) -> impl Iterator<Item = ResourceMemory> {
+        self.targets.memory()
     }
 
-    pub fn run_all(&self, compute: &mut wgpu::ComputePass<'_>, parity: usize) {
-        for ready in &self.kernels {
-            ready.dispatch(compute, parity, ready.workgroups);
+    pub fn entries(&self) -> impl Iterator<Item = &str> {
+        self.kernels.iter().map(|ready| ready.program.entry())
+    }
+
+    pub fn fragments(&self) -> impl Iterator<Item = &str> {
+        self.drawings.iter().map(|ready| ready.program.entry())
+    }
+
+    /// Every kernel, over what it writes.
+    pub fn dispatch_all(&self) -> impl Iterator<Item = Job> {
+        self.workgroups.iter().enumerate().map(|(kernel, &workgroups)| Job::Dispatch { kernel, workgroups })
+    }
+
+    /// One kernel; without a number of workgroups, over what it writes.
+    pub fn dispatch(&self, entry: &str, workgroups: Option<[u32; 3]>) -> Result<Job, PassError> {
+        let kernel = position(Stage::Compute, entry, self.entries())?;
+        Ok(Job::Dispatch { kernel, workgroups: workgroups.unwrap_or(self.workgroups[kernel]) })
+    }
+
+    /// One drawing.
+    pub fn draw(&self, entry: &str, batches: &[Batch]) -> Result<Job, PassError> {
+        let drawing = position(Stage::Fragment, entry, self.fragments())?;
+        Ok(Job::Draw { drawing, batches: batches.to_vec() })
+    }
+
+    /// Records what was asked for: neighbouring dispatches share a wgpu pass, each draw is one. The timestamps are those of node `index`.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, jobs: &[Job], parity: usize, stamps: Option<&Stamps>, index: usize) {
+        let both_dispatch = |a: &Job, b: &Job| matches!((a, b), (Job::Dispatch { .. }, Job::Dispatch { .. }));
+        // A node that asks for nothing is timed all the same.
+        let groups: Vec<&[Job]> = if jobs.is_empty() { vec![&[]] } else { jobs.chunk_by(both_dispatch).collect() };
+        for (at, group) in groups.iter().enumerate() {
+            let stamp = stamps.and_then(|stamps| stamps.of(index, at == 0, at + 1 == groups.len()));
+            match group {
+                [Job::Draw { drawing, batches }] => {
+                    let ready = &self.drawings[*drawing];
+                    ready.program.record(encoder, &self.targets, &ready.groups(parity), batches, stamp);
+                }
+                dispatches => self.compute(encoder, dispatches, parity, stamp),
+            }
         }
     }
 
-    pub fn run(
-        &self,
-        compute: &mut wgpu::ComputePass<'_>,
-        parity: usize,
-        entry: &str,
-        workgroups: Option<[u32; 3]>,
-    ) -> Result<(), PassError> {
-        let ready = self
-            .kernels
-            .iter()
-            .find(|ready| ready.kernel.entry() == entry)
-            .ok_or_else(|| PassError::NoEntry { entry: entry.to_owned(), known: self.entries().map(str::to_owned).collect() })?;
-        ready.dispatch(compute, parity, workgroups.unwrap_or(ready.workgroups));
-        Ok(())
+    fn compute(&self, encoder: &mut wgpu::CommandEncoder, jobs: &[Job], parity: usize, stamp: Option<Stamp<'_>>) {
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(&self.name), timestamp_writes: stamp.map(Stamp::compute) };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        for job in jobs {
+            if let Job::Dispatch { kernel, workgroups } = job {
+                let ready = &self.kernels[*kernel];
+                ready.program.dispatch(&mut pass, &ready.groups(parity), *workgroups);
+            }
+        }
     }
 
     /// Names of the live parameters.
@@ -183,10 +243,24 @@ impl Work {
     }
 }
 
-impl Ready {
-    fn dispatch(&self, compute: &mut wgpu::ComputePass<'_>, parity: usize, workgroups: [u32; 3]) {
-        self.kernel.dispatch(compute, &[self.globals.as_ref(), self.own[parity].as_ref()], workgroups);
+impl<P> Ready<P> {
+    fn new(program: P, [even, odd]: [Result<Option<wgpu::BindGroup>, Error>; 2]) -> Result<Self, Error> {
+        Ok(Ready { program, globals: None, own: [even?, odd?] })
     }
+
+    /// Bind groups of a frame of this parity.
+    fn groups(&self, parity: usize) -> [Option<&wgpu::BindGroup>; 2] {
+        [self.globals.as_ref(), self.own[parity].as_ref()]
+    }
+}
+
+fn position<'a>(stage: Stage, entry: &str, known: impl Iterator<Item = &'a str>) -> Result<usize, PassError> {
+    let known: Vec<&str> = known.collect();
+    known.iter().position(|&name| name == entry).ok_or_else(|| PassError::NoEntry {
+        stage: program::name(stage),
+        entry: entry.to_owned(),
+        known: known.iter().map(|&name| name.to_owned()).collect(),
+    })
 }
 
 fn live(context: &Context, step: &Step, known: &Known) -> Result<Option<Live>, Error> {

@@ -1,6 +1,6 @@
 //! Kinds of passes: what is known without a device, and what runs on it.
 
-use crate::{FrameInfo, node::Work};
+use crate::{Batch, FrameInfo, node::Work};
 use aquifer_graph::{Step, Value};
 
 /// The static half of a kind of pass: listed, documented and checked without a device. Its ports and parameters are not said here: they
@@ -17,7 +17,7 @@ pub struct PassKind {
     pub build: fn(&Step) -> Result<Box<dyn Pass>, PassError>,
 }
 
-/// The half of a pass that runs: it decides what to dispatch. Memory, bindings, parameters and timing are the executor's.
+/// The half of a pass that runs: it decides what to dispatch and what to draw. Memory, bindings, parameters and timing are the executor's.
 pub trait Pass: Send {
     /// Records one frame.
     ///
@@ -38,8 +38,10 @@ pub trait Pass: Send {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PassError {
     /// Its shader has no such entry point.
-    #[error("no compute entry point `{entry}`; there are: {}", known.join(", "))]
+    #[error("no {stage} entry point `{entry}`; there are: {}", known.join(", "))]
     NoEntry {
+        /// `compute` or `fragment`.
+        stage: &'static str,
         /// As asked.
         entry: String,
         /// All there are.
@@ -61,15 +63,24 @@ pub enum PassError {
     Refused(String),
 }
 
-/// One frame of one pass, while it is recorded.
+/// One frame of one pass, while it is recorded: what is asked for here becomes commands afterwards, in this order.
 pub struct Frame<'a> {
     pub(crate) info: &'a FrameInfo,
     pub(crate) work: &'a mut Work,
-    pub(crate) compute: &'a mut wgpu::ComputePass<'static>,
-    pub(crate) parity: usize,
+    pub(crate) scene: &'a [Batch],
+    pub(crate) jobs: Vec<Job>,
 }
 
-impl Frame<'_> {
+/// What a pass asked for.
+#[derive(Clone, Debug)]
+pub(crate) enum Job {
+    /// A kernel, by its place among the compute entry points.
+    Dispatch { kernel: usize, workgroups: [u32; 3] },
+    /// A drawing, by its place among the fragment entry points.
+    Draw { drawing: usize, batches: Vec<Batch> },
+}
+
+impl<'a> Frame<'a> {
     /// Where the frame stands.
     pub fn info(&self) -> &FrameInfo {
         self.info
@@ -82,7 +93,7 @@ impl Frame<'_> {
 
     /// Dispatches every entry point, in order of declaration, over what it writes.
     pub fn run_all(&mut self) {
-        self.work.run_all(self.compute, self.parity);
+        self.jobs.extend(self.work.dispatch_all());
     }
 
     /// Dispatches one entry point over what it writes.
@@ -90,7 +101,8 @@ impl Frame<'_> {
     /// # Errors
     /// [`PassError::NoEntry`].
     pub fn run(&mut self, entry: &str) -> Result<(), PassError> {
-        self.work.run(self.compute, self.parity, entry, None)
+        self.jobs.push(self.work.dispatch(entry, None)?);
+        Ok(())
     }
 
     /// Dispatches one entry point with so many workgroups.
@@ -98,7 +110,23 @@ impl Frame<'_> {
     /// # Errors
     /// [`PassError::NoEntry`].
     pub fn dispatch(&mut self, entry: &str, workgroups: [u32; 3]) -> Result<(), PassError> {
-        self.work.run(self.compute, self.parity, entry, Some(workgroups))
+        self.jobs.push(self.work.dispatch(entry, Some(workgroups))?);
+        Ok(())
+    }
+
+    /// The triangles of the scene, for [`Frame::draw`]: a batch's instances are the scene's by number, and its vertices those of their mesh.
+    pub fn scene(&self) -> &'a [Batch] {
+        self.scene
+    }
+
+    /// Draws with a fragment entry point, behind the shader's vertex entry point. What it gives lands in images of the size of the frame, which are
+    /// zeros where nothing was drawn; compute entry points read them as textures of group 1 with the same names.
+    ///
+    /// # Errors
+    /// [`PassError::NoEntry`].
+    pub fn draw(&mut self, fragment: &str, batches: &[Batch]) -> Result<(), PassError> {
+        self.jobs.push(self.work.draw(fragment, batches)?);
+        Ok(())
     }
 
     /// Sets a live parameter, from this frame on. One frame sees one value: dispatches recorded before see it too.
@@ -110,7 +138,7 @@ impl Frame<'_> {
     }
 }
 
-/// A pass that is nothing but its shader: every entry point, every frame.
+/// A pass that is nothing but its shader: every compute entry point, every frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct KernelPass;
 
@@ -126,6 +154,11 @@ impl KernelPass {
 
 impl Pass for KernelPass {
     fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), PassError> {
+        if let Some(fragment) = frame.work.fragments().next() {
+            let message =
+                format!("fragment entry point `{fragment}` is drawn by nobody: that takes host code, see `aquifer_render::PassKind`");
+            return Err(PassError::Refused(message));
+        }
         frame.run_all();
         Ok(())
     }

@@ -13,12 +13,22 @@ pub(crate) fn bytes(ty: &WireType, size: [u32; 2]) -> u64 {
 /// Where memory goes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MemoryReport {
-    /// In the plan's order.
+    /// In the plan's order, then the images that passes draw into.
     pub resources: Vec<ResourceMemory>,
     /// All bytes allocated, zeros and debugging aids included.
     pub allocated: u64,
     /// Bytes that sharing saved.
     pub saved: u64,
+}
+
+impl MemoryReport {
+    /// With what nodes hold beside the pool.
+    pub(crate) fn with(&self, images: impl Iterator<Item = ResourceMemory>) -> MemoryReport {
+        let mut report = self.clone();
+        report.resources.extend(images);
+        report.allocated += report.resources[self.resources.len()..].iter().map(|image| image.bytes).sum::<u64>();
+        report
+    }
 }
 
 /// Memory of one resource.
@@ -28,7 +38,7 @@ pub struct ResourceMemory {
     pub name: String,
     /// Bytes, both halves of a history pair counted.
     pub bytes: u64,
-    /// `transient`, `history` or `output`.
+    /// `transient`, `history`, `output` or `image`.
     pub life: &'static str,
     /// Number of the block that a transient shares.
     pub block: Option<usize>,

@@ -74,6 +74,15 @@ impl Renderer {
         Ok(())
     }
 
+    /// Begins anew at another frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::restart`].
+    pub fn restart_at(&mut self, first_frame: u32) -> Result<(), Error> {
+        self.options.first_frame = first_frame;
+        self.restart()
+    }
+
     /// Begins anew with another seed, for independent renders of the same frames.
     ///
     /// # Errors

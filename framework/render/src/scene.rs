@@ -6,7 +6,7 @@ mod mirror;
 mod moving;
 mod still;
 
-use crate::{Context, Error, FrameInfo, Globals};
+use crate::{Batch, Context, Error, FrameInfo, Globals};
 use aquifer_scene::{Features, Scene};
 use moving::{Moving, State};
 use std::sync::Arc;
@@ -19,8 +19,10 @@ pub struct View {
     pub camera: Option<String>,
     /// Seconds at frame 0.
     pub time: f32,
-    /// Seconds from one frame to the next; 0 stands still.
+    /// Seconds from one moment to the next; 0 stands still.
     pub step: f32,
+    /// Frames that a moment lasts; 0 counts as 1.
+    pub hold: u32,
     /// Film samples stay at the middle of the pixel.
     pub centred: bool,
 }
@@ -29,7 +31,7 @@ impl View {
     /// Seconds at a frame.
     pub fn time_at(&self, frame: u32) -> f32 {
         // In f64: after 10⁶ frames an f32 product is milliseconds off.
-        (f64::from(self.time) + f64::from(self.step) * f64::from(frame)) as f32
+        (f64::from(self.time) + f64::from(self.step) * f64::from(frame / self.hold.max(1))) as f32
     }
 }
 
@@ -39,6 +41,7 @@ pub struct SceneGlobals {
     view: View,
     still: Still,
     moving: Moving,
+    batches: Vec<Batch>,
     last: Option<State>,
 }
 
@@ -53,7 +56,7 @@ impl SceneGlobals {
         let still = Still::upload(context, &scene, &features)?;
         let first = State::of(&scene, &still, &view, 0).map_err(refused)?;
         let moving = Moving::new(context, &features, &first)?;
-        Ok(SceneGlobals { scene, view, still, moving, last: None })
+        Ok(SceneGlobals { batches: batches(&scene), scene, view, still, moving, last: None })
     }
 
     /// Entries of the traversal stack that a scene needs; the trace shaders take it as `scene/limits::STACK`.
@@ -87,6 +90,18 @@ impl SceneGlobals {
     }
 }
 
+/// Neighbouring instances of one mesh make one batch.
+fn batches(scene: &Scene) -> Vec<Batch> {
+    let meshes: Vec<u32> = scene.nodes.iter().filter_map(|node| node.mesh).collect();
+    let mut next = 0;
+    let batch = |group: &[u32]| {
+        let first = next;
+        next += group.len() as u32;
+        Batch { vertices: 0..3 * scene.meshes[group[0] as usize].triangles.len() as u32, instances: first..next }
+    };
+    meshes.chunk_by(|a, b| a == b).map(batch).collect()
+}
+
 fn refused(error: aquifer_scene::SceneError) -> Error {
     Error::Globals(error.to_string())
 }
@@ -111,6 +126,10 @@ impl Globals for SceneGlobals {
 
     fn set_time(&mut self, time: f32, step: f32) {
         (self.view.time, self.view.step) = (time, step);
+    }
+
+    fn batches(&self) -> &[Batch] {
+        &self.batches
     }
 
     fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>> {

@@ -36,14 +36,10 @@ impl Stamps {
         })
     }
 
-    /// What the descriptor of pass `index` takes.
-    pub fn writes(&self, index: usize) -> wgpu::ComputePassTimestampWrites<'_> {
-        let first = 2 * index as u32;
-        wgpu::ComputePassTimestampWrites {
-            query_set: &self.queries,
-            beginning_of_pass_write_index: Some(first),
-            end_of_pass_write_index: Some(first + 1),
-        }
+    /// For a wgpu pass of node `index`: the node's first writes the beginning, its last the end.
+    pub fn of(&self, index: usize, first: bool, last: bool) -> Option<Stamp<'_>> {
+        let begin = 2 * index as u32;
+        (first || last).then(|| Stamp { queries: &self.queries, begin: first.then_some(begin), end: last.then_some(begin + 1) })
     }
 
     /// Records the copy of all timestamps into the frame's buffer.
@@ -58,5 +54,25 @@ impl Stamps {
 
     pub fn nanoseconds_per_tick(&self) -> f64 {
         self.nanoseconds_per_tick
+    }
+}
+
+/// Which timestamps one wgpu pass writes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stamp<'a> {
+    queries: &'a wgpu::QuerySet,
+    begin: Option<u32>,
+    end: Option<u32>,
+}
+
+impl<'a> Stamp<'a> {
+    pub fn compute(self) -> wgpu::ComputePassTimestampWrites<'a> {
+        let Stamp { queries, begin, end } = self;
+        wgpu::ComputePassTimestampWrites { query_set: queries, beginning_of_pass_write_index: begin, end_of_pass_write_index: end }
+    }
+
+    pub fn render(self) -> wgpu::RenderPassTimestampWrites<'a> {
+        let Stamp { queries, begin, end } = self;
+        wgpu::RenderPassTimestampWrites { query_set: queries, beginning_of_pass_write_index: begin, end_of_pass_write_index: end }
     }
 }

@@ -4,7 +4,8 @@ mod common;
 
 use aquifer_graph::Value;
 use aquifer_render::{
-    Clock, Context, ContextOptions, Data, Error, Frame, NoGlobals, Once, Pass, PassError, PassKind, Renderer, RendererOptions, run_once,
+    Batch, Clock, Context, ContextOptions, Data, Error, Frame, NoGlobals, Once, Pass, PassError, PassKind, Renderer, RendererOptions,
+    run_once,
 };
 use aquifer_shader::Specialisation;
 use common::{TestGlobals, context, library, pixels, plan, registry, render, renderer, small};
@@ -103,6 +104,47 @@ fn a_pass_that_asks_for_what_is_not_there_is_an_error_with_its_name() {
     let mut renderer = renderer(&registry, plan(&registry, "lost.value", "[pass.lost]\n", &[]), small());
     let error = renderer.frame().unwrap_err();
     assert_eq!(error.to_string(), "pass `lost`: no compute entry point `nowhere`; there are: main");
+}
+
+/// Draws some instances of the pass `paint`.
+struct Painter {
+    instances: std::ops::Range<u32>,
+}
+
+impl Pass for Painter {
+    fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), PassError> {
+        frame.draw("ids", &[Batch { vertices: 0..3, instances: self.instances.clone() }])?;
+        frame.run("look")
+    }
+}
+
+#[test]
+fn a_pass_draws_into_images_and_looks_at_them() {
+    let kind = |build| PassKind { name: "painter", about: "", shader: "pass/paint", build };
+    let painted = |kind: PassKind| {
+        let registry = registry(&[kind]);
+        let mut renderer = renderer(&registry, plan(&registry, "painter.image", "[pass.painter]\n", &[]), small());
+        render(&mut renderer, 2);
+        (pixels(&mut renderer, "painter.image"), renderer.memory().clone(), renderer.timings())
+    };
+    let (image, memory, timings) = painted(kind(|_| Ok(Box::new(Painter { instances: 0..2 }))));
+    let expected = |x: usize| if x < 6 { [2.0, 7.0, 0.0, 1.0] } else { [1.0, 7.0, 0.0, 1.0] };
+    for (at, pixel) in image.iter().enumerate() {
+        assert_eq!(*pixel, expected(at % 13), "pixel {at}: the nearer one wins, whatever the order");
+    }
+    let images: Vec<_> = memory.resources.iter().filter(|resource| resource.life == "image").map(|image| image.bytes).collect();
+    assert_eq!(images, [13 * 9 * 8, 13 * 9 * 4], "ids and depth");
+    assert!(timings.passes[0].median_ms.is_some_and(|time| time > 0.0), "{timings:?}");
+    let (image, ..) = painted(kind(|_| Ok(Box::new(Painter { instances: 1..2 }))));
+    assert_eq!(image[12], [0.0, 0.0, 0.0, 1.0], "zeros where nothing is drawn");
+}
+
+#[test]
+fn a_drawing_without_host_code_is_refused() {
+    let registry = registry(&[]);
+    let mut renderer = renderer(&registry, plan(&registry, "paint.image", "[pass.paint]\n", &[]), small());
+    let error = renderer.frame().unwrap_err().to_string();
+    assert!(error.starts_with("pass `paint`: fragment entry point `ids` is drawn by nobody"), "{error}");
 }
 
 #[test]

@@ -28,6 +28,19 @@ pub struct Entry {
     pub workgroup_size: [u32; 3],
     /// Indices into [`Interface::bindings`] that it reaches.
     pub bindings: Vec<usize>,
+    /// What a fragment entry point gives, in order of declaration; builtins are not listed.
+    pub outputs: Vec<Output>,
+}
+
+/// One value that a fragment entry point gives for its pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// Name of the member of the returned struct.
+    pub name: String,
+    /// Its `@location`.
+    pub location: u32,
+    /// Its type, e.g. `vec2<u32>`.
+    pub ty: String,
 }
 
 /// Pipeline stage.

@@ -1,8 +1,8 @@
 //! From a naga module to an [`Interface`].
 
 use crate::{
-    BiasNote, Binding, Entry, Interface, Layout, Library, Member, Override, ResourceKind, Scalar, ShaderError, Specialisation, Stage,
-    comments::Comments, compose::unmangle, slots,
+    BiasNote, Binding, Entry, Interface, Layout, Library, Member, Output, Override, ResourceKind, Scalar, ShaderError, Specialisation,
+    Stage, comments::Comments, compose::unmangle, slots,
 };
 use naga::{AddressSpace, Handle, ScalarKind, StorageAccess, TypeInner, common::wgsl::TypeContext, proc::Layouter, valid::GlobalUse};
 use std::collections::BTreeMap;
@@ -179,9 +179,23 @@ impl Reader<'_> {
                 };
                 let reached = handles.iter().enumerate().filter(|(_, handle)| !info.get_entry_point(i)[**handle].is_empty());
                 let bindings = reached.map(|(at, _)| at).collect();
-                Some(Entry { name: point.name.clone(), stage, workgroup_size: point.workgroup_size, bindings })
+                let outputs = if stage == Stage::Fragment { self.outputs(point) } else { Vec::new() };
+                Some(Entry { name: point.name.clone(), stage, workgroup_size: point.workgroup_size, bindings, outputs })
             })
             .collect()
+    }
+
+    fn outputs(&self, point: &naga::EntryPoint) -> Vec<Output> {
+        let Some(result) = &point.function.result else { return Vec::new() };
+        let TypeInner::Struct { members, .. } = &self.module.types[result.ty].inner else { return Vec::new() };
+        let output = |member: &naga::StructMember| match member.binding {
+            Some(naga::Binding::Location { location, .. }) => {
+                let name = member.name.clone().unwrap_or_default();
+                Some(Output { name, location, ty: self.module.types.type_to_string(member.ty) })
+            }
+            _ => None,
+        };
+        members.iter().filter_map(output).collect()
     }
 
     fn overrides(&self) -> Result<Vec<Override>, ShaderError> {

@@ -90,6 +90,22 @@ const PASSES: &[(&str, &str, &str)] = &[
 /// Passes whose whole text matters.
 const WHOLE: &[(&str, &str)] = &[
     (
+        // Instance 0 covers the image, instance 1 the first six columns, nearer.
+        "paint",
+        "@group(1) @binding(0) var<storage, read_write> image: array<vec4<f32>>;\n\
+         @group(1) @binding(1) var drawn: texture_2d<u32>;\n\
+         struct Corner { @builtin(position) place: vec4<f32>, @location(0) @interpolate(flat) id: u32 }\n\
+         struct Given { @location(0) drawn: vec2<u32>, @builtin(frag_depth) depth: f32 }\n\
+         @vertex fn corner(@builtin(vertex_index) v: u32, @builtin(instance_index) id: u32) -> Corner {\n\
+         let p = vec2<f32>(f32(v & 1u), f32(v >> 1u)) * 4.0 - 1.0;\n\
+         return Corner(vec4<f32>(p, 0.0, 1.0), id); }\n\
+         @fragment fn ids(c: Corner) -> Given { if (c.id == 1u && c.place.x > 6.0) { discard; }\n\
+         return Given(vec2<u32>(c.id + 1u, 7u), 0.25 * f32(c.id + 1u)); }\n\
+         @compute @workgroup_size(8, 8) fn look(@builtin(global_invocation_id) id: vec3<u32>) {\n\
+         if (any(id.xy >= frame.extent)) { return; }\n\
+         image[at(id)] = vec4<f32>(textureLoad(drawn, id.xy, 0)); }\n",
+    ),
+    (
         "tiles",
         "/// @extent tiles 4 2\n@group(1) @binding(0) var<storage, read_write> tile: array<vec2<f32>>;\n\
          @compute @workgroup_size(2, 2) fn main(@builtin(global_invocation_id) id: vec3<u32>) {\n\
