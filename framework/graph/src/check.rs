@@ -6,7 +6,7 @@ mod values;
 mod wires;
 
 use crate::{
-    Cause, Contracts, Document, Fault, Faults, Graph, Knob, Node, PortId, Span, Spanned, Transport, When, Wire,
+    Cause, Contracts, Document, Fault, Faults, Graph, Knob, Node, PortId, Source, Span, Spanned, Transport, When, Wire,
     nearest::{cure, list},
     wire::{GRAMMAR, WireText},
 };
@@ -15,7 +15,13 @@ use passes::Pass;
 impl Graph {
     /// Checks everything that can be checked without a device; all faults come at once.
     pub fn check(document: &Document, contracts: &dyn Contracts) -> Result<Graph, Faults> {
-        let mut checker = Checker { document, contracts, faults: Vec::new() };
+        Graph::check_with(document.clone(), [], contracts)
+    }
+
+    /// [Lays settings over](Document::apply) the document, and checks the outcome. A setting with a fault hides no fault of the rest.
+    pub fn check_with(mut document: Document, edits: impl IntoIterator<Item = Source>, contracts: &dyn Contracts) -> Result<Graph, Faults> {
+        let faults = document.lay_edits(edits);
+        let mut checker = Checker { document: &document, contracts, faults };
         let graph = checker.graph();
         let mut faults = checker.faults;
         drop_repetitions(&mut faults);

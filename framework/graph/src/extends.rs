@@ -34,22 +34,31 @@ impl Document {
     /// `transport=full:4`, `pass.temporal.in.history=false`. Later ones win. A source's name is what faults call it, e.g. `--set`.
     pub fn apply(&mut self, edits: impl IntoIterator<Item = Source>) -> Result<(), Faults> {
         let mut document = self.clone();
-        let mut faults = Vec::new();
-        for edit in edits {
-            let index = document.sources.add(edit);
-            match edit::parse(index, document.sources.get(index)) {
-                Err(fault) => faults.push(fault),
-                Ok(table) => {
-                    let (layer, wrong) = read::read(table);
-                    faults.extend(wrong);
-                    faults.extend(layer.pass.keys().filter_map(|pass| document.unknown_pass(pass)));
-                    document = lay(document, layer, None);
-                }
-            }
-        }
+        let faults = document.lay_edits(edits);
         Faults::unless_empty(&document.sources, faults)?;
         *self = document;
         Ok(())
+    }
+
+    /// As [`Document::apply`], but those with faults are left out.
+    pub(crate) fn lay_edits(&mut self, edits: impl IntoIterator<Item = Source>) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        for edit in edits {
+            let index = self.sources.add(edit);
+            match self.layer(index) {
+                Ok(layer) => *self = lay(std::mem::take(self), layer, None),
+                Err(wrong) => faults.extend(wrong),
+            }
+        }
+        faults
+    }
+
+    /// The setting of that source, when nothing is wrong with it.
+    fn layer(&self, index: usize) -> Result<Document, Vec<Fault>> {
+        let table = edit::parse(index, self.sources.get(index)).map_err(|fault| vec![fault])?;
+        let (layer, mut faults) = read::read(table);
+        faults.extend(layer.pass.keys().filter_map(|pass| self.unknown_pass(pass)));
+        if faults.is_empty() { Ok(layer) } else { Err(faults) }
     }
 
     /// A fault, unless the graph has this pass.

@@ -51,10 +51,8 @@ fn leave_out(directive: &str) -> (String, BTreeMap<String, StandIn>) {
 
 /// Everything that people would see of a case.
 fn outcome(shelf: &Shelf, name: &str, text: &str) -> String {
-    let checked = Document::load(name, shelf).and_then(|mut document| {
-        document.apply(directives(text, "--set").into_iter().map(|edit| Source::new("--set", edit)))?;
-        Graph::check(&document, &fake::Fakes)
-    });
+    let edits = directives(text, "--set").into_iter().map(|edit| Source::new("--set", edit));
+    let checked = Document::load(name, shelf).and_then(|document| Graph::check_with(document, edits, &fake::Fakes));
     let graph = match checked {
         Ok(graph) => graph,
         Err(faults) => return faults.to_string(),
