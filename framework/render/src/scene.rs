@@ -19,10 +19,8 @@ pub struct View {
     pub camera: Option<String>,
     /// Seconds at frame 0.
     pub time: f32,
-    /// Seconds from one moment to the next; 0 stands still.
+    /// Seconds from one frame to the next; 0 stands still.
     pub step: f32,
-    /// Frames that a moment lasts; 0 counts as 1.
-    pub hold: u32,
     /// Film samples stay at the middle of the pixel.
     pub centred: bool,
 }
@@ -31,7 +29,7 @@ impl View {
     /// Seconds at a frame.
     pub fn time_at(&self, frame: u32) -> f32 {
         // In f64: after 10⁶ frames an f32 product is milliseconds off.
-        (f64::from(self.time) + f64::from(self.step) * f64::from(frame / self.hold.max(1))) as f32
+        (f64::from(self.time) + f64::from(self.step) * f64::from(frame)) as f32
     }
 }
 

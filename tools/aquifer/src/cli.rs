@@ -9,13 +9,16 @@ use clap::{ArgAction, Args, ColorChoice, Parser, Subcommand};
 
 /// Compare reservoir-based resampling (ReSTIR) honestly: render graphs are text files, and their parts are interchangeable.
 #[derive(Debug, Parser)]
-#[command(name = "aquifer", version, propagate_version = true, max_term_width = 110, after_help = EXIT_CODES)]
+#[command(name = "aquifer", version = VERSION, propagate_version = true, max_term_width = 110, after_help = EXIT_CODES)]
 pub struct Cli {
     #[command(flatten)]
     pub global: Global,
     #[command(subcommand)]
     pub command: Command,
 }
+
+/// The number, and the commit that the program was built from.
+pub const VERSION: &str = env!("AQUIFER_VERSION");
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 used wrongly, 75 failed for now (device lost, out of memory: try again).
 Data goes to stdout, messages go to stderr. NO_COLOR is honoured.";

@@ -113,6 +113,7 @@ macro_rules! failed {
 failed!(
     aquifer_lab::atomic::WriteError,
     aquifer_lab::film::AreaError,
+    aquifer_lab::watch::WatchError,
     aquifer_lab::film::FilmError,
     aquifer_lab::stats::SizesDiffer,
     aquifer_scenes::ExportError,

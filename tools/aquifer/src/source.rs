@@ -45,17 +45,31 @@ pub struct SceneArgs {
 impl GraphArgs {
     /// The graph's text with everything laid over it.
     pub fn document(&self) -> Result<Document, Failure> {
-        let mut document = Document::load(&file_name(&self.graph), &files())?;
-        let transport = self.transport.map(|transport| Source::new("--transport", format!("transport={transport}")));
-        let settings = self.settings.iter().map(|text| Source::new("--set", text));
-        document.apply(transport.into_iter().chain(settings))?;
+        let mut document = self.written()?;
+        document.apply(self.edits())?;
         Ok(document)
     }
 
-    /// The graph, checked against the shaders that a scene needs.
+    /// The graph's text as its files have it.
+    fn written(&self) -> Result<Document, Failure> {
+        Ok(Document::load(&file_name(&self.graph), &files())?)
+    }
+
+    /// What the command line lays over it.
+    fn edits(&self) -> impl Iterator<Item = Source> {
+        let transport = self.transport.map(|transport| Source::new("--transport", format!("transport={transport}")));
+        transport.into_iter().chain(self.settings.iter().map(|text| Source::new("--set", text)))
+    }
+
+    /// The graph with everything laid over it, checked against the shaders that a scene needs.
     pub fn check(&self, scene: Option<&Scene>) -> Result<(Graph, Registry), Failure> {
+        self.check_with(scene, [])
+    }
+
+    /// As [`GraphArgs::check`], with further settings laid over it.
+    pub fn check_with(&self, scene: Option<&Scene>, edits: impl IntoIterator<Item = Source>) -> Result<(Graph, Registry), Failure> {
         let registry = self.shaders.registry(scene)?;
-        let graph = Graph::check(&self.document()?, &registry)?;
+        let graph = Graph::check_with(self.written()?, self.edits().chain(edits), &registry)?;
         Ok((graph, registry))
     }
 }
@@ -97,6 +111,12 @@ impl SceneArgs {
     pub fn environment_identity(&self) -> Result<Option<String>, Failure> {
         self.environment.as_deref().map(identity).transpose()
     }
+}
+
+/// Where a text was read from, when that is a file.
+pub fn file_of(source: &Source) -> Option<PathBuf> {
+    let path = Path::new(&source.name);
+    path.is_file().then(|| path.to_owned())
 }
 
 /// A built-in scene by name, or a file; finished.

@@ -2,7 +2,10 @@
 
 use aquifer_graph::Transport;
 use aquifer_lab::film::Format;
-use std::path::{Path, PathBuf};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 /// The longest side of an image. A guard against slips of the finger; the adapter's own limits are checked later.
 const LONGEST_SIDE: u32 = 32_768;
@@ -31,6 +34,36 @@ pub fn milliseconds(text: &str) -> Result<f64, String> {
     match text.trim_end_matches("ms").trim().parse::<f64>() {
         Ok(milliseconds) if milliseconds.is_finite() && milliseconds > 0.0 => Ok(milliseconds),
         _ => Err("write a number of milliseconds above 0".to_owned()),
+    }
+}
+
+/// Frames to render.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Frames {
+    /// So many, into one image.
+    Count(u32),
+    /// These of an animation, into an image each.
+    Range(Range<u32>),
+}
+
+/// `64` or `0..48`
+pub fn frames(text: &str) -> Result<Frames, String> {
+    let number = |digits: &str| digits.trim().parse::<u32>().map_err(|_| format!("`{digits}` is no number of a frame"));
+    let Some((first, end)) = text.split_once("..") else {
+        return match number(text)? {
+            0 => Err("at least one frame is needed".to_owned()),
+            count => Ok(Frames::Count(count)),
+        };
+    };
+    let range = number(first)?..number(end)?;
+    if range.is_empty() { Err(format!("no frame lies in {text}: the last number is not included")) } else { Ok(Frames::Range(range)) }
+}
+
+/// Frames in a second.
+pub fn rate(text: &str) -> Result<f32, String> {
+    match text.trim().parse::<f32>() {
+        Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
+        _ => Err("write a number of frames a second, above 0".to_owned()),
     }
 }
 
@@ -65,6 +98,16 @@ mod tests {
         for wrong in ["", "256", "0x144", "256x0", "-1x2", "1x2x3", "99999x1", "ax b", "1.5x2"] {
             assert!(size(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn numbers_and_ranges_of_frames() {
+        assert_eq!((frames("64"), frames("0..48")), (Ok(Frames::Count(64)), Ok(Frames::Range(0..48))));
+        for wrong in ["", "0", "-1", "3..3", "4..3", "..", "1..", "1..x", "1.5", "0..99999999999"] {
+            assert!(frames(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(rate("23.976"), Ok(23.976));
+        assert!(rate("0").is_err() && rate("-1").is_err() && rate("NaN").is_err());
     }
 
     #[test]

@@ -165,6 +165,20 @@ fn frame_of(graph: &Graph, node: usize) -> Option<PortId> {
     wires.filter(|(port, _)| colors(port)).find_map(|(_, wire)| wire.filter(|wire| wire.when == When::This)).map(|wire| wire.from)
 }
 
+/// Inputs that carry a running mean over from the frame before, as (pass, input).
+pub fn running_means(graph: &Graph) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (index, node) in graph.nodes().iter().enumerate() {
+        for (port, wire) in node.wires.iter().enumerate() {
+            let carries = |wire: &aquifer_graph::Wire| wire.from.node == index && wire.when == When::Previous;
+            if wire.as_ref().is_some_and(carries) && node.port(port).ty.element == MOMENTS {
+                found.push((node.pass.clone(), node.port(port).name.clone()));
+            }
+        }
+    }
+    found
+}
+
 /// Places of the members in units of 4 bytes.
 struct Members {
     mean: usize,

@@ -1,11 +1,7 @@
 //! `aquifer graphs [NAME]`
 
-use crate::{
-    failure::Failure,
-    source::{GraphArgs, ShaderArgs},
-    ui::Ui,
-};
-use aquifer_graph::nearest;
+use crate::{failure::Failure, source, ui::Ui};
+use aquifer_graph::{Document, nearest};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -41,8 +37,7 @@ fn text(wanted: &str) -> Result<&'static str, Failure> {
 fn list() -> Result<String, Failure> {
     let mut lines = Vec::new();
     for (name, _) in names() {
-        let args = GraphArgs { graph: name.to_owned(), settings: Vec::new(), transport: None, shaders: ShaderArgs { folders: Vec::new() } };
-        let document = args.document()?;
+        let document = Document::load(&format!("{name}.toml"), &source::files())?;
         let words = |words: Option<&aquifer_graph::Spanned<String>>| words.map_or("", |words| words.value.as_str()).to_owned();
         lines.push(format!("{name:24} {:12} {}", words(document.transport.as_ref()), words(document.title.as_ref())));
     }

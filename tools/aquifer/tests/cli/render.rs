@@ -144,3 +144,79 @@ fn an_interrupted_render_writes_what_it_has() {
     assert!(rest.iter().any(|line| line.contains("interrupted")), "{rest:?}");
     assert!(Film::read(&out).expect("it was written").facts.is_some_and(|facts| facts.runs.frames() > 0));
 }
+
+#[test]
+fn a_sequence_is_numbered_images_of_what_moves() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let at = |name: &str| folder.path().join(name);
+    let averaging = "extends = 'gbuffer_view.toml'\noutput = 'tonemap.image'\n\
+                     [pass.accumulate]\nin.color = 'debug_view.color'\nin.history = 'accumulate.moments@prev'\n\
+                     [pass.tonemap]\nin.color = 'accumulate.image'\n";
+    let graphs = tempfile::tempdir().expect("a temporary folder");
+    let graph = graphs.path().join("graph.toml").to_string_lossy().into_owned();
+    std::fs::write(&graph, averaging).expect("a file");
+    let sequence = |name: &str, options: &[&str]| {
+        let out = at(name).to_string_lossy().into_owned();
+        let args = ["render", &graph, "--scene", "animated", "--size", "16x9", "-o", &out];
+        aquifer(&[&args[..], options].concat())
+    };
+    let run = sequence("a.####.exr", &["--frames", "2..5", "--fps", "10", "--json"]).succeeds();
+    let summaries: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+    assert_eq!(summaries.as_array().map(Vec::len), Some(3));
+    assert_eq!(names(folder.path()), ["a.0002.exr", "a.0003.exr", "a.0004.exr"]);
+    let film = Film::read(&at("a.0003.exr")).expect("it was written");
+    let facts = film.facts.expect("it says what made it");
+    assert_eq!((facts.animation_time, facts.samples_per_pixel, facts.runs), (0.3, 1, aquifer_lab::film::Runs::one(0, 3, 1)));
+    // Each image is its own frame's, and not a mean with those before: rendered alone it is the same.
+    let alone = ["--animation-time", "0.3", "--first-frame", "3", "--frames", "1"];
+    sequence("alone.exr", &alone).succeeds();
+    assert_eq!(film.color, Film::read(&at("alone.exr")).expect("it was written").color);
+    // Held, each image is the mean over frames of one moment.
+    sequence("held{frame}.exr", &["--frames", "1..3", "--fps", "10", "--hold", "4"]).succeeds();
+    let held = Film::read(&at("held0002.exr")).expect("it was written");
+    assert!(held.variance.is_some());
+    let facts = held.facts.expect("it says what made it");
+    assert_eq!((facts.animation_time, facts.samples_per_pixel, facts.runs), (0.2, 4, aquifer_lab::film::Runs::one(0, 8, 4)));
+    sequence("b.exr", &["--frames", "0..2"]).fails(1, "b.####.exr");
+    sequence("b.#.exr", &["--frames", "0..2", "--time", "3"]).fails(1, "--time");
+    sequence("b.#.exr", &["--frames", "2..2"]).fails(2, "the last number is not included");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_watched_graph_is_rendered_anew_and_a_broken_one_changes_nothing() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let at = |name: &str| folder.path().join(name);
+    let write = |channel: &str| {
+        let text = format!("extends = \"gbuffer_view.toml\"\n[pass.debug_view]\nset.channel = \"{channel}\"\n");
+        std::fs::write(at("new.toml"), text).and_then(|()| std::fs::rename(at("new.toml"), at("graph.toml"))).expect("a file");
+    };
+    write("normal");
+    let command = Command::new(env!("CARGO_BIN_EXE_aquifer"))
+        .args(["render", &at("graph.toml").to_string_lossy(), "--size", "16x9", "--frames", "1", "--watch", "-o"])
+        .arg(at("a.png"))
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut child = Killed(command.expect("the program was built with this test"));
+    let stderr = child.0.stderr.take().expect("it is piped");
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(stderr)).map_while(Result::ok);
+    let mut told = |words: &str| assert!(lines.any(|line| line.contains(words)), "`{words}` was not told");
+    told("wrote");
+    let first = std::fs::read(at("a.png")).expect("it was written");
+    write("nrmal");
+    told("graph.toml:3");
+    told("the last good graph stays");
+    assert_eq!(first, std::fs::read(at("a.png")).expect("it is still there"));
+    write("distance");
+    told("wrote");
+    assert_ne!(first, std::fs::read(at("a.png")).expect("it was written"));
+    let interrupted = Command::new("kill").args(["-INT", &child.0.id().to_string()]).status().expect("kill is everywhere");
+    assert!(interrupted.success());
+    assert_eq!(child.0.wait().expect("it ends").code(), Some(0));
+}

@@ -9,7 +9,7 @@ use aquifer_render::{MemoryReport, Renderer, Startup, Timings};
 use serde::Serialize;
 use std::{
     path::{Path, PathBuf},
-    time::Instant,
+    time::Duration,
 };
 
 /// What a render did.
@@ -72,20 +72,18 @@ impl Setup {
 }
 
 impl Summary {
-    /// Collects it; `began` is when the program did.
+    /// Collects it; `set_up` is what came before rendering.
     pub fn new(
         graph: &Graph,
         film: &Film,
         renderer: &Renderer,
         rays: Vec<PassRays>,
         frames: u64,
-        began: Instant,
+        set_up: Duration,
         outputs: &[PathBuf],
     ) -> Self {
         let facts = film.facts.clone().expect("the film of a render has its facts");
         let startup = renderer.startup();
-        // Set-up is what came before rendering; the first frame is the beginning of that.
-        let setup = began.elapsed().as_secs_f64() - facts.render_seconds;
         Self {
             title: graph.title().to_owned(),
             graph: facts.graph.hash,
@@ -97,7 +95,7 @@ impl Summary {
             frames,
             samples_per_pixel: facts.samples_per_pixel,
             seconds: facts.render_seconds,
-            seconds_to_first_frame: startup.first_frame.map(|first| setup + first.as_secs_f64()),
+            seconds_to_first_frame: startup.first_frame.map(|first| (set_up + first).as_secs_f64()),
             adapter: facts.adapter,
             version: facts.version,
             mean_luminance: mean_luminance(film),

@@ -1,0 +1,156 @@
+//! A graph that renders a scene, with what is taken off it.
+
+use super::{Args, summary::Summary};
+use crate::{
+    cli::VERSION,
+    failure::Failure,
+    interrupt,
+    progress::{Goal, Progress, State},
+    source::text_of,
+    ui::Ui,
+};
+use aquifer_graph::{Graph, NeedsAll, Plan, Source};
+use aquifer_lab::{
+    capture::Capture,
+    film::{Facts, Film, Format, GraphText, Runs},
+    rays::RayCounters,
+};
+use aquifer_render::{Context, ContextOptions, Renderer, RendererOptions, SceneGlobals, View};
+use aquifer_scene::Scene;
+use std::{
+    path::PathBuf,
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+/// The scene, the graph, and the renderer that holds both.
+pub struct Job<'a> {
+    args: &'a Args,
+    scene: Arc<Scene>,
+    view: View,
+    graph: Graph,
+    capture: Capture,
+    rays: RayCounters,
+    renderer: Renderer,
+}
+
+impl<'a> Job<'a> {
+    /// What the arguments ask for, at one moment.
+    pub fn new(args: &'a Args, ui: &Ui) -> Result<Self, Failure> {
+        let view = View { time: args.animation_time, ..View::default() };
+        Self::at(args, view, args.first_frame, |_| Vec::new(), ui)
+    }
+
+    /// What the arguments ask for, as time goes by; `edits` have the last word on the graph.
+    pub fn at(args: &'a Args, view: View, first_frame: u32, edits: impl FnOnce(&Graph) -> Vec<Source>, ui: &Ui) -> Result<Self, Failure> {
+        let scene = Arc::new(args.scene.load(ui)?);
+        let (mut graph, mut registry) = args.graph.check(Some(&scene))?;
+        let edits = edits(&graph);
+        if !edits.is_empty() {
+            (graph, registry) = args.graph.check_with(Some(&scene), edits)?;
+        }
+        let (capture, rays, plan) = planned(&graph)?;
+        let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+        let view = View { camera: args.camera.clone(), ..view };
+        let globals = SceneGlobals::new(&context, scene.clone(), view.clone())?;
+        let options = RendererOptions { size: args.size, seed: args.seed, first_frame, ..RendererOptions::default() };
+        let renderer = Renderer::new(&context, &registry, plan, Box::new(globals), options)?;
+        Ok(Self { args, scene, view, graph, capture, rays, renderer })
+    }
+
+    /// Reads graph and shaders anew. When something is wrong with them, everything stays as it was.
+    pub fn reload(&mut self) -> Result<(), Failure> {
+        let (graph, registry) = self.args.graph.check(Some(&self.scene))?;
+        let (capture, rays, plan) = planned(&graph)?;
+        self.renderer.replace_plan(&registry, plan)?;
+        (self.graph, self.capture, self.rays) = (graph, capture, rays);
+        Ok(())
+    }
+
+    /// The graph that renders.
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    /// Begins anew at that frame, with all frames at one time.
+    pub fn restart_at(&mut self, first_frame: u32, time: f32) -> Result<(), Failure> {
+        self.view = View { time, step: 0.0, ..self.view.clone() };
+        self.renderer.set_time(time, 0.0);
+        Ok(self.renderer.restart_at(first_frame)?)
+    }
+
+    /// Renders until the goal is reached, the user has had enough, or `stop` says so.
+    pub fn render(&mut self, goal: Goal, ui: &Ui, stop: impl Fn() -> bool) -> Result<State, Failure> {
+        let mut progress = Progress::new(ui, goal);
+        let began = Instant::now();
+        let mut state = State { frames: 0, seconds: 0.0 };
+        while !goal.is_reached(state) && !interrupt::asked() && !stop() {
+            self.renderer.frame()?;
+            state = State { frames: state.frames + 1, seconds: began.elapsed().as_secs_f64() };
+            progress.update(state);
+        }
+        self.renderer.finish()?;
+        progress.finish();
+        match state.frames {
+            0 if interrupt::asked() => Err(Failure::new("interrupted before the first frame: nothing was written")),
+            _ if interrupt::asked() => {
+                ui.warn(&format!("interrupted: writing the {} frames that are done", state.frames));
+                Ok(State { seconds: began.elapsed().as_secs_f64(), ..state })
+            }
+            _ => Ok(State { seconds: began.elapsed().as_secs_f64(), ..state }),
+        }
+    }
+
+    /// Renders so many frames, in silence.
+    pub fn frames(&mut self, count: u32) -> Result<State, Failure> {
+        let began = Instant::now();
+        for _ in 0..count {
+            self.renderer.frame()?;
+        }
+        self.renderer.finish()?;
+        Ok(State { frames: count.into(), seconds: began.elapsed().as_secs_f64() })
+    }
+
+    /// Writes what the last frames gave to files; `began` is when the way to them did.
+    pub fn write(&mut self, paths: &[PathBuf], spent: State, began: Instant) -> Result<Summary, Failure> {
+        let facts = self.facts(spent)?;
+        let set_up = began.elapsed().saturating_sub(Duration::from_secs_f64(spent.seconds));
+        let film = Film { facts: Some(facts), ..self.capture.radiance(&mut self.renderer)? };
+        for path in paths {
+            match Format::of(path)? {
+                Format::Exr => film.write(path)?,
+                Format::Png => self.capture.display(&mut self.renderer)?.write(path)?,
+            }
+        }
+        let rays = self.rays.read(&mut self.renderer)?;
+        Ok(Summary::new(&self.graph, &film, &self.renderer, rays, spent.frames, set_up, paths))
+    }
+
+    fn facts(&self, spent: State) -> Result<Facts, Failure> {
+        // Without a mean over frames, the film is that of the last one.
+        let frames = if self.capture.averages() { spent.frames } else { 1 };
+        let next = self.renderer.next_frame();
+        let camera = self.view.camera.clone().or_else(|| self.scene.camera_names().into_iter().next()).unwrap_or_default();
+        Ok(Facts {
+            samples_per_pixel: u32::try_from(frames).unwrap_or(u32::MAX).saturating_mul(Capture::samples_per_frame(&self.graph)),
+            render_seconds: spent.seconds,
+            graph: GraphText { text: text_of(&self.graph), hash: self.graph.digest() },
+            scene: self.args.scene.identity()?,
+            environment: self.args.scene.environment_identity()?,
+            camera,
+            animation_time: self.view.time_at(next.wrapping_sub(1)),
+            transport: self.graph.transport().to_string(),
+            runs: Runs::one(self.args.seed, u64::from(next) - frames, frames),
+            adapter: self.renderer.context().adapter().name.clone(),
+            version: VERSION.to_owned(),
+        })
+    }
+}
+
+/// What is taken off a graph, and the plan that keeps it.
+fn planned(graph: &Graph) -> Result<(Capture, RayCounters, Plan), Failure> {
+    let (capture, rays) = (Capture::of(graph), RayCounters::of(graph));
+    let keep: Vec<&str> = capture.keep().into_iter().chain(rays.keep()).collect();
+    let plan = graph.plan(&NeedsAll, &keep)?;
+    Ok((capture, rays, plan))
+}
