@@ -7,7 +7,7 @@ import package::base::math::{HUGE, frame_of, max3};
 import package::base::pack::{pack_half4, pack_unit, unpack_half4, unpack_unit};
 import package::bsdf::{Bsdf, BsdfSample, MIN_ALPHA, bsdf_pdf, bsdf_sample, bsdf_value};
 import package::frame::frame::{camera_at};
-import package::scene::geometry::{Instance, NONE, instance_at, normal_to_world, point_to_world, triangle_infos, triangles, vector_to_world};
+import package::scene::geometry::{Instance, NONE, instance_at, normal_to_world, point_to_world, triangle_at, triangle_infos, vector_to_world};
 import package::scene::material::{DOUBLE_SIDED, Material, UNLIT, emission_at, material_at, materials};
 import package::scene::ray::{Hit, Ray, leave};
 @if(normal_maps) import package::scene::material::{textured, uvs_of};
@@ -81,14 +81,14 @@ fn bsdf_of(m: Material) -> Bsdf {
 
 /// Unit normal of the triangle's front side, in the world.
 fn front_normal(instance: Instance, triangle: u32) -> vec3<f32> {
-    let t = triangles[triangle];
+    let t = triangle_at(triangle);
     return normalize(normal_to_world(instance, cross(t.b - t.a, t.c - t.a)));
 }
 
 /// The surface at a hit of a ray that came along `-view`.
 fn surface_at(hit: Hit, view: vec3<f32>, when: u32) -> Surface {
     let instance = instance_at(hit.instance, when);
-    let t = triangles[hit.triangle];
+    let t = triangle_at(hit.triangle);
     let b = hit.barycentrics;
     let position = point_to_world(instance, t.a + b.x * (t.b - t.a) + b.y * (t.c - t.a));
     let front = front_normal(instance, hit.triangle);
@@ -106,7 +106,7 @@ fn towards(n: vec3<f32>, view: vec3<f32>) -> vec3<f32> {
 /// Interpolated, turned to the viewer's side, then bent by the normal map; unit. A bent normal may face away from the viewer: such a
 /// point reflects nothing (turning the normal back would let it shine).
 fn shading_normal(hit: Hit, instance: Instance, m: Material, view: vec3<f32>) -> vec3<f32> {
-    let t = triangles[hit.triangle];
+    let t = triangle_at(hit.triangle);
     let b = hit.barycentrics;
     let a = unpack_unit(t.na);
     let n = normalize(normal_to_world(instance, a + b.x * (unpack_unit(t.nb) - a) + b.y * (unpack_unit(t.nc) - a)));

@@ -8,7 +8,7 @@
 import package::base::math::{HUGE, PI, luminance, max3};
 import package::base::sampling::{sample_triangle};
 import package::frame::frame::{NOW, frame};
-import package::scene::geometry::{NONE, instance_at, point_to_world, triangle_infos, triangles};
+import package::scene::geometry::{NONE, instance_at, point_to_world, triangle_at, triangle_infos};
 import package::scene::material::{DOUBLE_SIDED, emission_at, materials};
 import package::scene::ray::{Hit, Ray, RELATIVE_ERROR};
 @if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance};
@@ -92,7 +92,7 @@ fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
 
 fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> LightPoint {
     let instance = instance_at(light.index, when);
-    let t = triangles[light.triangle];
+    let t = triangle_at(light.triangle);
     let a = point_to_world(instance, t.a);
     let b = point_to_world(instance, t.b);
     let c = point_to_world(instance, t.c);

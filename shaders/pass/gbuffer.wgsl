@@ -9,7 +9,7 @@
 //! was taken is moved to its rim.
 
 import package::frame::frame::{BEFORE, NOW, camera_at, camera_direction, film_sample, frame, index_of, inside, project};
-import package::scene::geometry::{Instance, Triangle, instance_at, instances, point_to_object, point_to_world, position_of, triangles, vector_to_object};
+import package::scene::geometry::{Instance, Triangle, instance_at, point_to_object, point_to_world, position_of, triangle_at, vector_to_object};
 import package::scene::ray::{Hit};
 import package::surface::{SurfaceRecord, no_surface, pack_surface, surface_at};
 @if(alpha) import package::scene::alpha::{stops};
@@ -36,9 +36,9 @@ struct Seen {
 }
 
 @vertex fn corner(@builtin(vertex_index) vertex: u32, @builtin(instance_index) id: u32) -> Corner {
-    let instance = instances[id];
+    let instance = instance_at(id, NOW);
     let triangle = instance.first_triangle + vertex / 3u;
-    let t = triangles[triangle];
+    let t = triangle_at(triangle);
     let p = select(select(t.a, t.b, vertex % 3u == 1u), t.c, vertex % 3u == 2u);
     return Corner(clip(instance, point_to_world(instance, p)), id, triangle);
 }
@@ -75,7 +75,7 @@ fn direction_of(pixel: vec2<u32>) -> vec3<f32> {
 fn meet(id: u32, triangle: u32, direction: vec3<f32>) -> vec3<f32> {
     let instance = instance_at(id, NOW);
     let along = vector_to_object(instance, direction);
-    let t = triangles[triangle];
+    let t = triangle_at(triangle);
     let e1 = t.b - t.a;
     let e2 = t.c - t.a;
     let p = cross(along, e2);

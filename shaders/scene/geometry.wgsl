@@ -1,6 +1,6 @@
 //! Triangles and where they stand. Triangles are in the order of the leaves of their mesh's hierarchy.
 
-import package::base::pack::{unpack_unit};
+import package::base::table::{floats, words};
 import package::frame::frame::{NOW};
 
 /// Three corners in object space, each with its packed shading normal.
@@ -17,7 +17,7 @@ struct TriangleInfo {
 struct Instance {
     to_world_x: vec4<f32>, to_world_y: vec4<f32>, to_world_z: vec4<f32>,
     to_object_x: vec4<f32>, to_object_y: vec4<f32>, to_object_z: vec4<f32>,
-    /// Index of the mesh's root in `nodes`.
+    /// How the mesh's hierarchy begins, in the words of what fills slot `trace`.
     root: u32,
     /// Index of the mesh's first triangle.
     first_triangle: u32,
@@ -29,17 +29,36 @@ struct Instance {
 
 const NONE: u32 = 0xffffffffu;
 
-@group(0) @binding(0) var<storage, read> triangles: array<Triangle>;
+/// Of `Triangle`, 3 texels each.
+@group(0) @binding(0) var triangles: texture_2d<u32>;
 @group(0) @binding(1) var<storage, read> triangle_infos: array<TriangleInfo>;
-@group(0) @binding(2) var<storage, read> instances: array<Instance>;
+/// Of `Instance`, 7 texels each.
+@group(0) @binding(2) var instances: texture_2d<u32>;
 /// The same instances last frame.
-@if(moving_objects) @group(0) @binding(3) var<storage, read> instances_prev: array<Instance>;
+@if(moving_objects) @group(0) @binding(3) var instances_prev: texture_2d<u32>;
+
+fn triangle_at(id: u32) -> Triangle {
+    let a = words(triangles, 3u * id);
+    let b = words(triangles, 3u * id + 1u);
+    let c = words(triangles, 3u * id + 2u);
+    return Triangle(bitcast<vec3<f32>>(a.xyz), a.w, bitcast<vec3<f32>>(b.xyz), b.w, bitcast<vec3<f32>>(c.xyz), c.w);
+}
 
 fn instance_at(id: u32, when: u32) -> Instance {
     @if(moving_objects) {
-        if (when != NOW) { return instances_prev[id]; }
+        if (when != NOW) { return instance_in(instances_prev, id); }
     }
-    return instances[id];
+    return instance_in(instances, id);
+}
+
+fn instance_in(table: texture_2d<u32>, id: u32) -> Instance {
+    let at = 7u * id;
+    let last = words(table, at + 6u);
+    return Instance(
+        floats(table, at), floats(table, at + 1u), floats(table, at + 2u),
+        floats(table, at + 3u), floats(table, at + 4u), floats(table, at + 5u),
+        last.x, last.y, last.z, last.w,
+    );
 }
 
 fn point_to_world(i: Instance, p: vec3<f32>) -> vec3<f32> {
@@ -67,7 +86,7 @@ fn normal_to_world(i: Instance, n: vec3<f32>) -> vec3<f32> {
 
 /// World position of a point of a triangle.
 fn position_of(instance: u32, triangle: u32, barycentrics: vec2<f32>, when: u32) -> vec3<f32> {
-    let t = triangles[triangle];
+    let t = triangle_at(triangle);
     let p = t.a + barycentrics.x * (t.b - t.a) + barycentrics.y * (t.c - t.a);
     return point_to_world(instance_at(instance, when), p);
 }

@@ -77,32 +77,16 @@ impl Kernel {
         pass.dispatch_workgroups(x, y, z);
     }
 
-    /// Records one dispatch on the caller's own buffers, given by declared or qualified name (`count`, `base/rng::count`).
+    /// The bind groups of all groups, by group; see [`Kernel::bind`].
     ///
     /// # Errors
-    /// [`Error::NoName`] for a name that the entry point does not reach, [`Error::Unbound`], and what [`Context::guard`] finds.
-    pub fn record(
+    /// As [`Kernel::bind`].
+    pub fn bind_all<'a>(
         &self,
         context: &Context,
-        encoder: &mut wgpu::CommandEncoder,
-        buffers: &[(&str, &wgpu::Buffer)],
-        workgroups: [u32; 3],
-    ) -> Result<(), Error> {
-        for (name, _) in buffers {
-            self.binding(name)?;
-        }
-        let find = |binding: &Binding| {
-            let (_, buffer) = buffers.iter().find(|(name, _)| names(binding, name))?;
-            Some(buffer.as_entire_binding())
-        };
-        let groups: Result<Vec<_>, Error> = (0..GROUPS).map(|group| self.bind(context, group, find)).collect();
-        let groups = groups?;
-        let groups: Vec<_> = groups.iter().map(Option::as_ref).collect();
-        let label = self.program.label();
-        context.guard(label, || {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
-            self.dispatch(&mut pass, &groups, workgroups);
-        })
+        find: impl Fn(&Binding) -> Option<wgpu::BindingResource<'a>>,
+    ) -> Result<Vec<Option<wgpu::BindGroup>>, Error> {
+        (0..GROUPS).map(|group| self.bind(context, group, &find)).collect()
     }
 
     /// The binding of that declared or qualified name.
@@ -118,7 +102,8 @@ impl Kernel {
     }
 }
 
-fn names(binding: &Binding, name: &str) -> bool {
+/// The binding has that declared or qualified name.
+pub(crate) fn names(binding: &Binding, name: &str) -> bool {
     match name.split_once("::") {
         Some((module, name)) => binding.module == module && binding.name == name,
         None => binding.name == name,

@@ -2,7 +2,7 @@
 //!
 //! A [`Context`] is an open device. A [`Registry`] composes the shaders of every kind of pass and tells the graph their contracts. A
 //! [`Renderer`] takes a plan, a registry and [`Globals`], and renders frames. Shaders meet the host by name: layouts, numbers and offsets
-//! come from reflection. A [`Kernel`] by itself runs one entry point on any buffers; [`run_once`] does so in one call, for tests.
+//! come from reflection. A [`Kernel`] by itself runs one entry point on any buffers; [`run_once`] does so in one call, for tests, and a [`Job`] again and again, for timing.
 //!
 //! What is absent: this crate knows no pass, no domain, no file format and no window.
 
@@ -44,6 +44,6 @@ pub use pool::{MemoryReport, ResourceMemory};
 pub use readback::read;
 pub use registry::{Known, Registry};
 pub use renderer::{Renderer, RendererOptions};
-pub use run_once::{Data, Once, run_once};
+pub use run_once::{Data, Job, Once, run_once};
 pub use scene::{SceneGlobals, View};
 pub use timing::{Clock, PassTime, Startup, Timings};

@@ -79,6 +79,10 @@ impl Need {
     }
 }
 
+/// Rows of a texture.
+pub(crate) const TABLE_ROWS: Need =
+    Need { limit: "max_texture_dimension_2d", unit: "rows of 8192 texels of 16 bytes", cure: "; a scene with fewer triangles fits" };
+
 /// One binding of a storage buffer, in bytes.
 pub const BINDING_SIZE: Need = Need { limit: "max_storage_buffer_binding_size", unit: "bytes", cure: "; a smaller --size needs less" };
 /// One buffer, in bytes.

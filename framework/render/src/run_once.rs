@@ -1,7 +1,7 @@
-//! One dispatch on buffers made for it: for tests of shader functions.
+//! Dispatches on buffers made for them: for tests of shader functions, and for timing a kernel by itself.
 
-use crate::{Context, Error, Kernel, readback};
-use aquifer_shader::{Composed, ResourceKind};
+use crate::{Context, Error, Globals, Kernel, NoGlobals, kernel::names, readback};
+use aquifer_shader::{Binding, Composed, ResourceKind};
 
 /// What a buffer of [`run_once`] holds.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +33,7 @@ pub struct Once<'a> {
     pub entry: &'a str,
     /// `override`s by name.
     pub constants: &'a [(&'a str, f64)],
-    /// Every binding that the entry point reaches, by declared or qualified name.
+    /// Bindings that the entry point reaches, by declared or qualified name: all that globals do not give.
     pub buffers: &'a [(&'a str, Data<'a>)],
     /// Workgroups across, down and deep.
     pub workgroups: [u32; 3],
@@ -42,18 +42,67 @@ pub struct Once<'a> {
 /// Runs one dispatch, and returns the bytes of every [`Data::Out`] and [`Data::InOut`], in the order given.
 ///
 /// # Errors
-/// As [`Kernel::compute`], [`Kernel::record`] and [`Context::wait`].
+/// As [`Job::new`], [`Job::run`] and [`Job::results`].
 pub fn run_once(context: &Context, once: &Once<'_>) -> Result<Vec<Vec<u8>>, Error> {
-    let kernel = Kernel::compute(context, once.entry, once.shader, once.entry, once.constants)?;
-    let made: Result<Vec<_>, Error> = once.buffers.iter().map(|(name, data)| buffer(context, &kernel, name, *data)).collect();
-    let made = made?;
-    let named: Vec<_> = once.buffers.iter().zip(&made).map(|((name, _), buffer)| (*name, buffer)).collect();
-    let mut encoder = context.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(once.entry) });
-    kernel.record(context, &mut encoder, &named, once.workgroups)?;
-    let submission = context.guard(once.entry, || context.queue().submit([encoder.finish()]))?;
-    context.wait(&submission, once.entry)?;
-    let wanted = once.buffers.iter().zip(&made).filter(|((_, data), _)| !matches!(data, Data::In(_)));
-    wanted.map(|((name, data), buffer)| readback::read(context, name, buffer, 0, length(*data))).collect()
+    let job = Job::new(context, once, &NoGlobals)?;
+    job.run(1)?;
+    job.results()
+}
+
+/// A dispatch that can be run again and again.
+pub struct Job {
+    context: Context,
+    kernel: Kernel,
+    groups: Vec<Option<wgpu::BindGroup>>,
+    workgroups: [u32; 3],
+    /// Name, buffer and bytes of what is returned.
+    returned: Vec<(String, wgpu::Buffer, u64)>,
+}
+
+impl Job {
+    /// Compiles and uploads. What is not among the job's buffers is asked of `globals`.
+    ///
+    /// # Errors
+    /// As [`Kernel::compute`] and [`Kernel::bind`].
+    pub fn new(context: &Context, once: &Once<'_>, globals: &dyn Globals) -> Result<Job, Error> {
+        let kernel = Kernel::compute(context, once.entry, once.shader, once.entry, once.constants)?;
+        let made: Result<Vec<_>, Error> = once.buffers.iter().map(|(name, data)| buffer(context, &kernel, name, *data)).collect();
+        let made = made?;
+        let find = |binding: &Binding| {
+            let own = once.buffers.iter().zip(&made).find(|((name, _), _)| names(binding, name));
+            own.map(|(_, buffer)| buffer.as_entire_binding()).or_else(|| globals.resource(&binding.module, &binding.name))
+        };
+        let groups = kernel.bind_all(context, find)?;
+        let returned = once.buffers.iter().zip(made).filter(|((_, data), _)| !matches!(data, Data::In(_)));
+        let returned = returned.map(|((name, data), buffer)| ((*name).to_owned(), buffer, length(*data))).collect();
+        Ok(Job { context: context.clone(), kernel, groups, workgroups: once.workgroups, returned })
+    }
+
+    /// Runs it so many times in one submission, and waits.
+    ///
+    /// # Errors
+    /// What [`Context::guard`] and [`Context::wait`] find.
+    pub fn run(&self, times: u32) -> Result<(), Error> {
+        let label = self.kernel.entry();
+        let groups: Vec<_> = self.groups.iter().map(Option::as_ref).collect();
+        let submission = self.context.guard(label, || {
+            let mut encoder = self.context.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) });
+            for _ in 0..times {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes: None });
+                self.kernel.dispatch(&mut pass, &groups, self.workgroups);
+            }
+            self.context.queue().submit([encoder.finish()])
+        })?;
+        self.context.wait(&submission, label)
+    }
+
+    /// The bytes of every [`Data::Out`] and [`Data::InOut`], in the order given.
+    ///
+    /// # Errors
+    /// As [`crate::read`].
+    pub fn results(&self) -> Result<Vec<Vec<u8>>, Error> {
+        self.returned.iter().map(|(name, buffer, bytes)| readback::read(&self.context, name, buffer, 0, *bytes)).collect()
+    }
 }
 
 fn length(data: Data<'_>) -> u64 {

@@ -4,7 +4,9 @@
 
 mod mirror;
 mod moving;
+mod nodes;
 mod still;
+mod store;
 
 use crate::{Batch, Context, Error, FrameInfo, Globals};
 use aquifer_scene::{Features, Scene};
@@ -132,6 +134,6 @@ impl Globals for SceneGlobals {
 
     fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>> {
         let name = format!("{module}::{name}");
-        self.moving.buffer(&name).or_else(|| self.still.buffer(&name)).map(wgpu::Buffer::as_entire_binding)
+        self.moving.store(&name).or_else(|| self.still.store(&name)).map(store::Store::binding)
     }
 }

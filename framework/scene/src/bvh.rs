@@ -47,7 +47,7 @@ pub enum BvhQuality {
 /// How to build the hierarchies of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BvhOptions {
-    /// Most triangles in a leaf, 1 to 255.
+    /// Most triangles in a leaf, 1 to 8: shaders count them in 3 bits.
     pub max_leaf: u32,
     /// Build time against traversal time.
     pub quality: BvhQuality,
@@ -114,7 +114,7 @@ fn build_tree(boxes: &[Aabb], options: &BvhOptions) -> Bvh2 {
     );
     let mut optimizer = ReinsertionOptimizer::default();
     optimizer.run(&mut tree, params.reinsertion_batch_ratio, None);
-    collapse(&mut tree, options.max_leaf.clamp(1, 255), params.collapse_traversal_cost);
+    collapse(&mut tree, options.max_leaf.clamp(1, 8), params.collapse_traversal_cost);
     let second_pass = params.reinsertion_batch_ratio * params.post_collapse_reinsertion_batch_ratio_multiplier;
     optimizer.run(&mut tree, second_pass, None);
     tree

@@ -1,7 +1,7 @@
 //! What can be typed.
 
 use crate::{
-    command::{adapters, check, compare, completions, diff, dot, graphs, man, merge, passes, render, scenes, schema},
+    command::{adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, render, scenes, schema},
     failure::Failure,
     ui::Ui,
 };
@@ -59,6 +59,8 @@ pub enum Command {
     Merge(merge::Args),
     /// Measure how far one image is from another
     Diff(diff::Args),
+    /// Measure speed: medians and ratios of contestants that take turns
+    Bench(bench::Args),
     /// Print completions for a shell
     #[command(hide = true)]
     Completions(completions::Args),
@@ -82,6 +84,7 @@ impl Command {
             Self::Adapters(args) => adapters::run(args, ui),
             Self::Merge(args) => merge::run(args, ui),
             Self::Diff(args) => diff::run(args, ui),
+            Self::Bench(args) => bench::run(args, ui),
             Self::Completions(args) => completions::run(args, ui),
             Self::Man(args) => man::run(args, ui),
         }

@@ -1,6 +1,7 @@
 //! One file for every subcommand.
 
 pub mod adapters;
+pub mod bench;
 pub mod check;
 pub mod compare;
 pub mod completions;

@@ -6,6 +6,7 @@
 //! Everything here is deterministic: the same images give the same verdicts.
 
 pub mod atomic;
+pub mod bench;
 pub mod capture;
 pub mod compare;
 pub mod film;

@@ -2,7 +2,7 @@
 
 use aquifer_render::Registry;
 use aquifer_scene::Scene;
-use aquifer_shader::ShaderError;
+use aquifer_shader::{Library, ShaderError};
 use std::path::PathBuf;
 
 /// Why the shaders cannot be made ready.
@@ -16,13 +16,18 @@ pub enum StageError {
     Render(#[from] aquifer_render::Error),
 }
 
-/// The built-in shaders with those of `folders` over them, and the built-in passes; see [`aquifer_passes::registry`].
-pub fn registry(scene: Option<&Scene>, folders: &[PathBuf]) -> Result<Registry, StageError> {
+/// The built-in shaders with those of `folders` over them.
+pub fn library(folders: &[PathBuf]) -> Result<Library, ShaderError> {
     let mut library = aquifer_passes::library();
     for folder in folders {
         library.add_folder(folder)?;
     }
-    Ok(aquifer_passes::registry(library, scene)?)
+    Ok(library)
+}
+
+/// [`library`] and the built-in passes; see [`aquifer_passes::registry`].
+pub fn registry(scene: Option<&Scene>, folders: &[PathBuf]) -> Result<Registry, StageError> {
+    Ok(aquifer_passes::registry(library(folders)?, scene)?)
 }
 
 #[cfg(test)]

@@ -3,10 +3,12 @@
 use super::{
     View,
     mirror::{self, NONE},
-    still::{Still, array},
+    nodes,
+    still::Still,
+    store::Store,
 };
 use crate::{Context, Error, FrameInfo};
-use aquifer_scene::{BvhNode, Camera, Features, Light, LightList, Moment, Scene, SceneError, Tlas};
+use aquifer_scene::{Camera, Features, Light, LightList, Moment, Scene, SceneError, Tlas};
 use std::collections::BTreeMap;
 
 /// The scene at one time, in bytes.
@@ -25,6 +27,8 @@ struct Array {
     now: &'static str,
     /// Empty where shaders never ask for last frame's.
     before: &'static str,
+    /// A table, not a buffer.
+    table: bool,
     bytes: Vec<u8>,
 }
 
@@ -39,11 +43,17 @@ impl State {
             Array {
                 now: "scene/geometry::instances",
                 before: "scene/geometry::instances_prev",
+                table: true,
                 bytes: bytes(&instances(&moment, &list, still)),
             },
-            Array { now: "trace/bvh2::tlas", before: "trace/bvh2::tlas_prev", bytes: bytes(&upper(&tlas)) },
-            Array { now: "scene/punctual::punctuals", before: "scene/punctual::punctuals_prev", bytes: bytes(&punctuals(scene, &moment)) },
-            Array { now: "lights/scene::lights", before: "", bytes: bytes(&lights) },
+            Array { now: "trace/bvh2::tlas", before: "trace/bvh2::tlas_prev", table: true, bytes: bytes(&nodes::upper(&tlas.bvh)) },
+            Array {
+                now: "scene/punctual::punctuals",
+                before: "scene/punctual::punctuals_prev",
+                table: false,
+                bytes: bytes(&punctuals(scene, &moment)),
+            },
+            Array { now: "lights/scene::lights", before: "", table: false, bytes: bytes(&lights) },
         ];
         let drawable = if list.table.is_empty() { 0 } else { list.lights.len() as u32 };
         Ok(State { time, view: view.clone(), camera: moment.camera, arrays, lights: drawable, depth: tlas.bvh.depth })
@@ -68,12 +78,6 @@ fn instances(moment: &Moment, list: &LightList, still: &Still) -> Vec<mirror::In
     moment.instances.iter().zip(&list.first_of_instance).map(record).collect()
 }
 
-/// The upper hierarchy; of an empty one, a root whose children no ray enters. Room for as many nodes as instances can need.
-fn upper(tlas: &Tlas) -> Vec<BvhNode> {
-    let nothing = BvhNode { min: [f32::MAX; 3], first: 1, max: [f32::MIN; 3], count: 0 };
-    if tlas.bvh.nodes.is_empty() { vec![nothing; 3] } else { tlas.bvh.nodes.clone() }
-}
-
 fn punctuals(scene: &Scene, moment: &Moment) -> Vec<mirror::Punctual> {
     moment.lights.iter().map(|placed| mirror::Punctual::new(&scene.lights[placed.light as usize], placed)).collect()
 }
@@ -94,10 +98,10 @@ fn light_records(moment: &Moment, list: &LightList, still: &Still) -> Vec<mirror
     list.lights.iter().enumerate().map(record).collect()
 }
 
-/// The buffers.
+/// The arrays on the device.
 pub struct Moving {
-    buffers: BTreeMap<&'static str, wgpu::Buffer>,
-    frame: wgpu::Buffer,
+    stores: BTreeMap<&'static str, Store>,
+    frame: Store,
     /// Deepest upper hierarchy that the traversal stack was sized for.
     depth: u32,
     /// Camera of the frame before.
@@ -108,32 +112,30 @@ const FRAME: &str = "frame/frame::frame";
 
 impl Moving {
     pub fn new(context: &Context, features: &Features, first: &State) -> Result<Moving, Error> {
-        let mut buffers = BTreeMap::new();
-        for Array { now, before, bytes } in &first.arrays {
-            // A hierarchy of n leaves has 2 n − 1 nodes, but squashed instances have none: leave room for them to come back.
-            let room = if now.ends_with("tlas") {
-                first.arrays[0].bytes.len() / size_of::<mirror::Instance>() * 2 * size_of::<BvhNode>()
-            } else {
-                0
-            };
+        let mut stores = BTreeMap::new();
+        for Array { now, before, table, bytes } in &first.arrays {
             let mut contents = bytes.clone();
-            contents.resize(contents.len().max(room), 0);
-            buffers.insert(*now, array(context, now, &contents, wgpu::BufferUsages::STORAGE)?);
+            contents.resize(contents.len().max(room(now, first)), 0);
+            let make = |name| match table {
+                true => Store::table(context, name, &contents),
+                false => Store::buffer(context, name, &contents, wgpu::BufferUsages::STORAGE),
+            };
+            stores.insert(*now, make(now)?);
             if !before.is_empty() && (features.moving_objects || features.moving_lights) {
-                buffers.insert(*before, array(context, before, &contents, wgpu::BufferUsages::STORAGE)?);
+                stores.insert(*before, make(before)?);
             }
         }
-        let frame = array(context, FRAME, &[mirror::Frame::default()], wgpu::BufferUsages::UNIFORM)?;
+        let frame = Store::buffer(context, FRAME, &[mirror::Frame::default()], wgpu::BufferUsages::UNIFORM)?;
         let slack = if features.moving_objects { 16 } else { 0 };
-        Ok(Moving { buffers, frame, depth: first.depth + slack, camera: None })
+        Ok(Moving { stores, frame, depth: first.depth + slack, camera: None })
     }
 
-    pub fn buffer(&self, name: &str) -> Option<&wgpu::Buffer> {
-        if name == FRAME { Some(&self.frame) } else { self.buffers.get(name) }
+    pub fn store(&self, name: &str) -> Option<&Store> {
+        if name == FRAME { Some(&self.frame) } else { self.stores.get(name) }
     }
 
     pub fn bytes(&self) -> u64 {
-        self.buffers.values().map(wgpu::Buffer::size).sum::<u64>() + self.frame.size()
+        self.stores.values().map(Store::bytes).sum::<u64>() + self.frame.bytes()
     }
 
     pub fn write_now(&self, context: &Context, state: &State) -> Result<(), Error> {
@@ -154,8 +156,8 @@ impl Moving {
     }
 
     fn write(&self, context: &Context, name: &str, bytes: &[u8]) {
-        if let Some(buffer) = self.buffers.get(name) {
-            context.queue().write_buffer(buffer, 0, bytes);
+        if let Some(store) = self.stores.get(name) {
+            store.write(context, bytes);
         }
     }
 
@@ -173,8 +175,15 @@ impl Moving {
             camera,
             camera_prev: before,
         };
-        context.queue().write_buffer(&self.frame, 0, bytemuck::bytes_of(&frame));
+        self.frame.write(context, bytemuck::bytes_of(&frame));
     }
+}
+
+/// Bytes that an array may come to need. The upper hierarchy has less than one inner node an instance, but squashed instances are not in it: room
+/// for them to come back.
+fn room(name: &str, first: &State) -> usize {
+    let instances = first.arrays[0].bytes.len() / size_of::<mirror::Instance>();
+    if name.ends_with("tlas") { (1 + instances) * size_of::<nodes::Pair>() } else { 0 }
 }
 
 /// Place of the film sample in every pixel of a frame: the R2 sequence (Roberts 2018), turned by a hash of the seed. Uniform over seeds

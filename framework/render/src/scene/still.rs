@@ -1,14 +1,17 @@
 //! What does not move: geometry, materials, textures, the environment.
 
-use super::mirror::{self, NONE, pack_half4, pack_unit};
-use crate::{BINDING_SIZE, Context, Error};
-use aquifer_scene::{BvhNode, Emitters, EnvironmentDistribution, Features, Mesh, Scene, TextureRef};
+use super::{
+    mirror::{self, NONE, pack_half4, pack_unit},
+    nodes,
+    store::Store,
+};
+use crate::{Context, Error};
+use aquifer_scene::{Emitters, EnvironmentDistribution, Features, Mesh, Scene, TextureRef};
 use std::collections::BTreeMap;
-use wgpu::util::DeviceExt;
 
-/// Buffers by qualified name, and what moving data is made from.
+/// Arrays by qualified name, and what moving data is made from.
 pub struct Still {
-    buffers: BTreeMap<&'static str, wgpu::Buffer>,
+    stores: BTreeMap<&'static str, Store>,
     /// One a mesh.
     pub places: Vec<Place>,
     pub emitters: Emitters,
@@ -18,7 +21,9 @@ pub struct Still {
 /// Where a mesh begins in the shared arrays.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
+    /// Reference to the root of its hierarchy.
     pub root: u32,
+    pub first_node: u32,
     pub first_triangle: u32,
 }
 
@@ -26,7 +31,7 @@ impl Still {
     pub fn upload(context: &Context, scene: &Scene, features: &Features) -> Result<Still, Error> {
         let emitters = Emitters::find(scene);
         let environment = scene.environment.as_ref().map(EnvironmentDistribution::new);
-        let mut still = Still { buffers: BTreeMap::new(), places: places(scene), emitters, environment };
+        let mut still = Still { stores: BTreeMap::new(), places: places(scene), emitters, environment };
         still.add_geometry(context, scene, features)?;
         still.add_materials(context, scene)?;
         if let Some(environment) = &scene.environment {
@@ -35,26 +40,32 @@ impl Still {
         Ok(still)
     }
 
-    pub fn buffer(&self, name: &str) -> Option<&wgpu::Buffer> {
-        self.buffers.get(name)
+    pub fn store(&self, name: &str) -> Option<&Store> {
+        self.stores.get(name)
     }
 
     pub fn bytes(&self) -> u64 {
-        self.buffers.values().map(wgpu::Buffer::size).sum()
+        self.stores.values().map(Store::bytes).sum()
     }
 
     fn add<T: bytemuck::Pod>(&mut self, context: &Context, name: &'static str, records: &[T]) -> Result<(), Error> {
-        self.buffers.insert(name, array(context, name, records, wgpu::BufferUsages::STORAGE)?);
+        self.stores.insert(name, Store::buffer(context, name, records, wgpu::BufferUsages::STORAGE)?);
+        Ok(())
+    }
+
+    fn add_table<T: bytemuck::Pod>(&mut self, context: &Context, name: &'static str, records: &[T]) -> Result<(), Error> {
+        self.stores.insert(name, Store::table(context, name, records)?);
         Ok(())
     }
 
     fn add_geometry(&mut self, context: &Context, scene: &Scene, features: &Features) -> Result<(), Error> {
-        let nodes: Vec<BvhNode> = scene.meshes.iter().flat_map(|mesh| mesh.bvh.nodes.iter().copied()).collect();
-        self.add(context, "trace/bvh2::nodes", &nodes)?;
+        let pairs = |(mesh, place): (&Mesh, &Place)| nodes::pairs(&mesh.bvh, place.first_node, place.first_triangle).collect::<Vec<_>>();
+        let pairs: Vec<nodes::Pair> = scene.meshes.iter().zip(&self.places).flat_map(pairs).collect();
+        self.add_table(context, "trace/bvh2::nodes", &pairs)?;
         let all = |corner: fn(&Mesh, usize) -> mirror::Triangle| {
             scene.meshes.iter().flat_map(move |mesh| (0..mesh.triangles.len()).map(move |t| corner(mesh, t)))
         };
-        self.add(context, "scene/geometry::triangles", &all(triangle).collect::<Vec<_>>())?;
+        self.add_table(context, "scene/geometry::triangles", &all(triangle).collect::<Vec<_>>())?;
         let infos: Vec<_> = scene
             .meshes
             .iter()
@@ -118,8 +129,8 @@ impl Still {
             to_map_z: row(2),
             padding: 0,
         };
-        let buffer = array(context, "environment_info", &[info], wgpu::BufferUsages::UNIFORM)?;
-        self.buffers.insert("scene/environment::environment_info", buffer);
+        let buffer = Store::buffer(context, "environment_info", &[info], wgpu::BufferUsages::UNIFORM)?;
+        self.stores.insert("scene/environment::environment_info", buffer);
         let texels: Vec<[f32; 4]> = environment.radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
         self.add(context, "scene/environment::environment_texels", &texels)?;
         let pmf: Vec<f64> = self.environment.iter().flat_map(|d| d.table.entries.iter().map(|entry| f64::from(entry.pmf))).collect();
@@ -128,25 +139,14 @@ impl Still {
 }
 
 fn places(scene: &Scene) -> Vec<Place> {
-    let mut next = Place { root: 0, first_triangle: 0 };
+    let (mut first_node, mut first_triangle) = (0, 0);
     let place = |mesh: &Mesh| {
-        let place = next;
-        next.root += mesh.bvh.nodes.len() as u32;
-        next.first_triangle += mesh.triangles.len() as u32;
+        let place = Place { root: nodes::root(&mesh.bvh, first_node, first_triangle), first_node, first_triangle };
+        first_node += mesh.bvh.nodes.len() as u32 / 2;
+        first_triangle += mesh.triangles.len() as u32;
         place
     };
     scene.meshes.iter().map(place).collect()
-}
-
-/// A buffer of records, never empty: bindings must hold at least one element.
-pub fn array<T: bytemuck::Pod>(context: &Context, name: &str, records: &[T], usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, Error> {
-    let zero = [T::zeroed()];
-    let contents: &[u8] = bytemuck::cast_slice(if records.is_empty() { &zero } else { records });
-    BINDING_SIZE.require(&format!("the scene's `{name}`"), contents.len() as u64, context.limits().max_storage_buffer_binding_size)?;
-    context.guard(name, || {
-        let usage = usage | wgpu::BufferUsages::COPY_DST;
-        context.device().create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(name), contents, usage })
-    })
 }
 
 fn triangle(mesh: &Mesh, t: usize) -> mirror::Triangle {

@@ -1,0 +1,24 @@
+//! `aquifer bench trace`
+
+mod trace;
+
+use crate::{failure::Failure, ui::Ui};
+use clap::Subcommand;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Rays a second of each ray tracer on this adapter, beside obvhs on the CPU, on the same rays
+    Trace(trace::Args),
+}
+
+pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
+    match args.action {
+        Action::Trace(args) => trace::run(&args, ui),
+    }
+}

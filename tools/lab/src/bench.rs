@@ -1,0 +1,7 @@
+//! Speed: contestants take turns in one run, so that what else the machine does falls on all alike; medians and ratios are told.
+
+pub mod device;
+pub mod host;
+pub mod rays;
+pub mod tracing;
+pub mod turns;
