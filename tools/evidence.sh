@@ -1,10 +1,12 @@
 #!/bin/sh
 # The evidence tier: comparisons too long for the tests. Resumable; results go to docs/evidence/*.json with commit, adapter and date.
 #
-#     tools/evidence.sh external [--size 64x36|256x144] [--samples N] [SCENE:TRANSPORT …]
+#     tools/evidence.sh external [--size 64x36|256x144] [--minutes N] [SCENE:TRANSPORT …]
+#     tools/evidence.sh held_out [SCENE …]
 #
-# external: the path tracer against Mitsuba 3 (tests/external). PYTHON names an interpreter that has tests/external/requirements.txt.
-# Counted: 8,192 samples at 256x144 are 3·10⁸ paths, of full:4 one to three 10⁹ rays: half an hour to an hour on two cores.
+# external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
+# PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
+# Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -15,8 +17,12 @@ external)
     cargo build --quiet -p aquifer
     "${PYTHON:-python3}" tests/external/evidence.py target/debug/aquifer out/evidence "$@"
     ;;
+held_out)
+    cargo build --quiet -p aquifer
+    "${PYTHON:-python3}" tests/external/held_out.py target/debug/aquifer out/evidence/held_out "$@"
+    ;;
 *)
-    echo "evidence: no item \`$item\`; there is: external" >&2
+    echo "evidence: no item \`$item\`; there are: external, held_out" >&2
     exit 2
     ;;
 esac

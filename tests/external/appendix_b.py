@@ -73,7 +73,8 @@ class AppendixB(mi.BSDF):
     opacity     texture or number      cutoff              alphaMode MASK: a hole below it (−1: opacity is coverage)
     normal_map  texture of raw RGB     normal_scale        number
     ior, specular, specular_color      numbers, see [IOR] and [SPEC]
-    vertex_color                       true: base_color is multiplied by the mesh attribute `vertex_color`
+    vertex_color                       true: base_color is multiplied by the mesh attribute `vertex_color`, opacity by
+                                       `vertex_opacity`
     vertex_tangent                     true: the normal map's frame is the mesh attributes `vertex_tangent` and
                                        `vertex_handedness`, else it follows the texture coordinates
     """
@@ -210,6 +211,8 @@ class AppendixB(mi.BSDF):
         if self.opacity is None:
             return mi.Color3f(0.0)
         opacity = self.opacity.eval_1(si, active)
+        if self.vertex_color:
+            opacity = opacity * si.shape.eval_attribute_1('vertex_opacity', si, active)
         if self.cutoff >= 0.0:
             opacity = dr.select(opacity >= self.cutoff, 1.0, 0.0)
         return mi.Color3f(1.0 - opacity)

@@ -146,3 +146,7 @@ def decode_image(data):
 def srgb_to_linear(encoded):
     """IEC 61966-2-1."""
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055)**2.4)
+
+
+def linear_to_srgb(linear):
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0031308)**(1 / 2.4) - 0.055)

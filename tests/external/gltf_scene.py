@@ -10,9 +10,9 @@ Conventions
 - Opacity: MASK is thresholded after filtering, BLEND is coverage.
 - An environment map is a file beside the glTF (`environment=`): equirectangular, u = 0.5 + atan2(x, −z) / 2π,
   v = acos(y) / π, bilinear between texel centres.
-Not converted, with an error: two UV sets in one material, different wrapping in u and v, opacity
-of vertex colours, textures of KHR_materials_specular, other extensionsRequired. Skins, morph targets and animation are
-left in the rest pose, with a warning.
+Not converted, with an error: two UV sets in one material, different wrapping in u and v, textures of
+KHR_materials_specular, other extensionsRequired. Skins, morph targets and animation are left in the rest pose, with a
+warning.
 """
 
 import math
@@ -108,9 +108,8 @@ def read_primitive(file, primitive, world):
         if name in attributes:
             part[name] = attributes[name][corners].astype(np.float64)
     if 'COLOR_0' in attributes:
-        if attributes['COLOR_0'].shape[1] == 4 and not np.all(attributes['COLOR_0'][:, 3] == 1):
-            raise Unsupported('vertex colours with opacity')
-        part['COLOR_0'] = attributes['COLOR_0'][corners].astype(np.float64)
+        colors = attributes['COLOR_0'][corners].astype(np.float64)
+        part['COLOR_0'] = np.concatenate([colors, np.ones((len(corners), 4 - colors.shape[1]))], axis=1)
     if 'TANGENT' in attributes:
         tangents = attributes['TANGENT'][corners].astype(np.float64)
         handedness = tangents[:, 3:] * np.sign(np.linalg.det(linear))
@@ -148,8 +147,6 @@ def join(parts):
         width = next(part[name].shape[1] for part in parts if name in part)
         neutral = 1.0 if name == 'COLOR_0' else 0.0
         columns = [part.get(name, np.full((len(part['positions']), width), neutral)) for part in parts]
-        if name == 'COLOR_0':
-            columns = [column[:, :3] for column in columns]
         joined[name] = np.concatenate(columns)
     return joined
 
@@ -164,7 +161,8 @@ def mesh(name, surface, bsdf, light):
     uvs = surface.get('uvs')
     shape = mi.Mesh(f'material {name}', count, count // 3, props, True, uvs is not None)
     if 'COLOR_0' in surface:
-        shape.add_attribute('vertex_color', 3, mi.Float(surface['COLOR_0'].astype(np.float32).ravel()))
+        shape.add_attribute('vertex_color', 3, mi.Float(surface['COLOR_0'][:, :3].astype(np.float32).ravel()))
+        shape.add_attribute('vertex_opacity', 1, mi.Float(surface['COLOR_0'][:, 3].astype(np.float32)))
     if 'TANGENT' in surface:
         shape.add_attribute('vertex_tangent', 3, mi.Float(surface['TANGENT'][:, :3].astype(np.float32).ravel()))
         shape.add_attribute('vertex_handedness', 1, mi.Float(surface['TANGENT'][:, 3].astype(np.float32)))
@@ -213,20 +211,19 @@ def punctual_light(light, intensity, position, direction):
 
 
 def environment_light(path):
-    """Mitsuba's map has its first texel centre at u = 0 and looks the other way round: resampled, finer, onto that."""
+    """Mitsuba's map looks the other way round, and its rows go from v = 0 to v = 1: two rows a texel hold the same bilinear map."""
     image = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False)
     image = np.array(image, np.float64)
     height, width = image.shape[:2]
-    factor = max(1, min(4, 4096 // width))
-    u = (np.arange(width * factor) / (width * factor) + 0.5) % 1.0 * width - 0.5
-    v = np.clip(np.arange(height * factor) / (height * factor - 1) * height - 0.5, 0, height - 1)
+    u = np.arange(width) + width / 2
+    v = np.clip(np.arange(2 * height + 1) / 2 - 0.5, 0, height - 1)
     left, top = np.floor(u).astype(int), np.minimum(np.floor(v).astype(int), height - 2)
     du, dv = (u - left)[None, :, None], (v - top)[:, None, None]
     rows = image[top] * (1 - dv) + image[top + 1] * dv
-    fine = rows[:, left % width] * (1 - du) + rows[:, (left + 1) % width] * du
+    turned = rows[:, left % width] * (1 - du) + rows[:, (left + 1) % width] * du
     weight = np.sin(np.pi * (np.arange(height) + 0.5) / height)[:, None, None]
     mean = (image * weight).sum(axis=(0, 1)) / (weight.sum() * width)
-    return {'type': 'envmap', 'bitmap': mi.Bitmap(np.ascontiguousarray(fine.astype(np.float32))),
+    return {'type': 'envmap', 'bitmap': mi.Bitmap(np.ascontiguousarray(turned.astype(np.float32))),
             'irradiance': math.pi * (LUMINANCE @ mean)}
 
 

@@ -4,21 +4,31 @@
 #     ./make_references.sh FOLDER [SCENE …]
 #
 # FOLDER holds SCENE.glb and, where the scene has one, its environment SCENE.exr, as
-# `aquifer scenes export SCENE FOLDER/SCENE.glb` writes them.
+# `aquifer scenes export SCENE FOLDER/SCENE.glb` writes them; `lamps` is one of held_out_scenes.py, kept as references/lamps.glb.
 # A reference that shows the same .glb is left alone. PYTHON names the interpreter.
 set -eu
 folder=$(cd "$1" && pwd)
 shift
-[ $# -gt 0 ] || set -- cornell glossy
+[ $# -gt 0 ] || set -- cornell glossy door_ajar sun_room textured outdoor lamps
 cd "$(dirname "$0")"
 mkdir -p references
 for scene in "$@"; do
     environment=
     [ ! -e "$folder/$scene.exr" ] || environment="--environment $folder/$scene.exr"
-    for transport in direct indirect:2 full:4; do
+    glb=$folder/$scene.glb
+    case $scene in
+    lamps)
+        glb=references/lamps.glb
+        transports=direct
+        "${PYTHON:-python3}" held_out_scenes.py references lamps
+        ;;
+    cornell | glossy) transports='direct indirect:2 full:4' ;;
+    *) transports='direct full:2' ;;
+    esac
+    for transport in $transports; do
         output=references/$scene-$(echo "$transport" | tr -d :).exr
         # shellcheck disable=SC2086 # the option and its value are two words
-        "${PYTHON:-python3}" render.py "$folder/$scene.glb" $environment --transport "$transport" --size 64x36 \
-            --spp 262144 --batches 512 --target 0.003 --keep -o "$output"
+        "${PYTHON:-python3}" render.py "$glb" $environment --transport "$transport" --size 64x36 \
+            --spp 262144 --batches 2048 --target 0.003 --keep -o "$output"
     done
 done

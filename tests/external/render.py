@@ -4,6 +4,7 @@
 
 The image is the mean of independent batches; their spread gives the standard error of that mean. The EXR holds R, G, B
 and SE.R, SE.G, SE.B as 32-bit floats, and attributes `reference:…` that say how it was made; stdout says the same.
+With --keep a run that was stopped goes on where it was, from `out.exr.state.npz`.
 Transports: emission, direct, indirect:N, full:N (window_path.py says what they hold).
 """
 
@@ -49,6 +50,21 @@ class Accumulator:
     def add(self, image):
         self.count += 1
         self.total, self.square = self.total + image, self.square + image**2
+
+    def save(self, path, facts):
+        partial = path.with_name('partial-' + path.name)
+        np.savez(partial, facts=json.dumps(facts), count=self.count, total=self.total, square=self.square)
+        partial.replace(path)
+
+    @classmethod
+    def resume(cls, path, facts):
+        """What was saved of the same facts, else nothing yet."""
+        found = cls()
+        if path.exists():
+            with np.load(path) as saved:
+                if str(saved['facts']) == json.dumps(facts):
+                    found.count, found.total, found.square = int(saved['count']), saved['total'], saved['square']
+        return found
 
     def result(self):
         mean = self.total / self.count
@@ -102,7 +118,7 @@ def arguments():
     parser.add_argument('--environment', type=pathlib.Path, help='equirectangular .exr')
     parser.add_argument('-o', '--output', type=pathlib.Path, required=True)
     parser.add_argument('--keep', action='store_true',
-                        help='leave the output alone where it shows this scene and transport')
+                        help='leave the output alone where it shows this scene and transport; go on with one that was begun')
     given = parser.parse_args()
     if given.batches < ROUND or given.batches % ROUND or given.spp < given.batches:
         parser.error(f'--batches must be a multiple of {ROUND} and at most --spp')
@@ -152,20 +168,26 @@ def main():
         scene, needs = gltf_scene.load(given.scene, given.size, given.camera, given.environment)
     except Unsupported as error:
         sys.exit(f'{given.scene}: not converted: {error}')
-    how, accumulator = integrator(given.transport, needs), Accumulator()
+    how = integrator(given.transport, needs)
     a_round = given.spp * ROUND // given.batches
+    state, begun = given.output.with_name(given.output.name + '.state.npz'), facts | {'samples of a round': a_round}
+    accumulator = Accumulator.resume(state, begun) if given.keep else Accumulator()
     while accumulator.count < given.batches:
         mean, error = render(scene, how, a_round, ROUND, given.seed + accumulator.count, accumulator)
         errors = block_errors(mean, error)
         print(f'{accumulator.count} of {given.batches} batches, {time.time() - started:.0f} s, '
               f'block error {np.quantile(errors, 0.95):.4f}', file=sys.stderr, flush=True)
+        if given.keep:
+            accumulator.save(state, begun)
         if np.quantile(errors, 0.95) <= given.target:
             break
+    mean, error = accumulator.result()
     facts |= {'spp': a_round // ROUND * accumulator.count, 'batches': accumulator.count,
               'seconds': round(time.time() - started, 1), 'mean': np.round(mean.mean(axis=(0, 1)), 6).tolist(),
               'block standard error': {name: round(float(np.quantile(errors, q)), 5)
                                        for name, q in (('median', 0.5), ('95 %', 0.95), ('largest', 1.0))}}
     write(given.output, mean, error, facts)
+    state.unlink(missing_ok=True)
     print(json.dumps(facts, indent=1, ensure_ascii=False))
 
 
