@@ -35,20 +35,24 @@ aquifer_has_vulkan() {
     return 1
 }
 
-aquifer_install_vulkan() {
-    echo "setup: no Vulkan adapter found; installing Mesa's software adapter (mesa-vulkan-drivers, libvulkan1)" >&2
+# Installs Debian packages, as root or through sudo; says what goes wrong.
+aquifer_apt_install() {
     as_root=
     if [ "$(id -u)" -ne 0 ]; then
-        aquifer_has sudo || aquifer_setup_fail "run as root: apt-get install mesa-vulkan-drivers libvulkan1"
+        aquifer_has sudo || {
+            echo "setup: run as root: apt-get install $*" >&2
+            return 1
+        }
         as_root=sudo
     fi
     log=$(mktemp)
     # shellcheck disable=SC2086 # as_root is empty or one word
     if ! { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq update &&
-        $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends mesa-vulkan-drivers libvulkan1; } >"$log" 2>&1; then
+        $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends "$@"; } >"$log" 2>&1; then
         tail -n 20 "$log" >&2
         rm -f "$log"
-        aquifer_setup_fail "apt could not install mesa-vulkan-drivers and libvulkan1"
+        echo "setup: apt could not install $*" >&2
+        return 1
     fi
     rm -f "$log"
 }
@@ -57,7 +61,8 @@ case $(uname -s) in
 Linux)
     if ! aquifer_has_vulkan; then
         if aquifer_has apt-get; then
-            aquifer_install_vulkan
+            echo "setup: no Vulkan adapter found; installing Mesa's software adapter (mesa-vulkan-drivers, libvulkan1)" >&2
+            aquifer_apt_install mesa-vulkan-drivers libvulkan1 || exit 1
         else
             aquifer_setup_fail "no Vulkan adapter found: install a Vulkan loader and driver (Fedora: vulkan-loader mesa-vulkan-drivers; Arch: vulkan-icd-loader vulkan-swrast; Alpine: vulkan-loader mesa-vulkan-swrast)"
         fi

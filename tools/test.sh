@@ -2,9 +2,11 @@
 # Sets up what is missing and runs every test. Further arguments go to the test runner.
 #
 # Tests that need a graphics adapter are skipped, and say so, where none is found. With AQUIFER_REQUIRE_ADAPTER=1 they fail instead.
+# The same goes for the test that needs a browser, and AQUIFER_REQUIRE_BROWSER=1.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
+. tools/setup_browser.sh
 
 started=$(date +%s)
 status=0

@@ -1,7 +1,7 @@
 //! What can be typed.
 
 use crate::{
-    command::{adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, render, scenes, schema},
+    command::{adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, render, report, scenes, schema},
     failure::Failure,
     ui::Ui,
 };
@@ -61,6 +61,8 @@ pub enum Command {
     Diff(diff::Args),
     /// Measure speed: medians and ratios of contestants that take turns
     Bench(bench::Args),
+    /// Make the page of a comparison again from its report.json
+    Report(report::Args),
     /// Print completions for a shell
     #[command(hide = true)]
     Completions(completions::Args),
@@ -85,6 +87,7 @@ impl Command {
             Self::Merge(args) => merge::run(args, ui),
             Self::Diff(args) => diff::run(args, ui),
             Self::Bench(args) => bench::run(args, ui),
+            Self::Report(args) => report::run(args, ui),
             Self::Completions(args) => completions::run(args, ui),
             Self::Man(args) => man::run(args, ui),
         }

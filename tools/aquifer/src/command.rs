@@ -12,5 +12,6 @@ pub mod man;
 pub mod merge;
 pub mod passes;
 pub mod render;
+pub mod report;
 pub mod scenes;
 pub mod schema;

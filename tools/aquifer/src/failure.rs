@@ -115,6 +115,7 @@ failed!(
     aquifer_lab::film::AreaError,
     aquifer_lab::watch::WatchError,
     aquifer_lab::film::FilmError,
+    aquifer_lab::page::PageError,
     aquifer_lab::stats::SizesDiffer,
     aquifer_scenes::ExportError,
     aquifer_scene::SceneError,

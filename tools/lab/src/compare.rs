@@ -4,6 +4,7 @@ pub mod bench;
 pub mod budget;
 pub mod error;
 pub mod evaluate;
+pub mod further;
 pub mod judge;
 pub mod observer;
 pub mod reference;

@@ -1,8 +1,8 @@
 //! Measuring: image files, statistics, references. No command line, no window.
 //!
 //! [`film`] holds rendered images and their files, [`capture`] takes them off a renderer that [`stage`] made ready, [`metrics`] says how far
-//! they are from a reference, [`stats`] decides what differences between them mean; [`compare`] holds graphs against each other; [`watch`] tells when
-//! the files of an experiment change.
+//! they are from a reference, [`stats`] decides what differences between them mean; [`compare`] holds graphs against each other, and [`page`]
+//! tells people what that gave; [`watch`] tells when the files of an experiment change.
 //! Everything here is deterministic: the same images give the same verdicts.
 
 pub mod atomic;
@@ -11,6 +11,7 @@ pub mod capture;
 pub mod compare;
 pub mod film;
 pub mod metrics;
+pub mod page;
 pub mod rays;
 pub mod stage;
 pub mod stats;

@@ -18,7 +18,7 @@ use crate::{
     },
 };
 use serde::Serialize;
-use std::{fmt, str::FromStr};
+use std::{cell::OnceCell, fmt, str::FromStr};
 
 /// A measure of distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -120,28 +120,29 @@ impl Measured {
     }
 }
 
-/// Two images of one size, with the maps that every area shares.
+/// Two images of one size, with the maps that every area shares; each is made when it is first asked for.
 pub struct Pair<'a> {
     image: &'a Film,
     reference: &'a Film,
-    flip_ldr: FlipMap,
-    flip_hdr: Option<FlipMap>,
+    flip_ldr: OnceCell<FlipMap>,
+    flip_hdr: OnceCell<Option<FlipMap>>,
 }
 
 impl<'a> Pair<'a> {
-    /// Computes the maps.
+    /// Of images that must have one size.
     pub fn new(image: &'a Film, reference: &'a Film) -> Result<Self, SizesDiffer> {
-        Ok(Self { image, reference, flip_ldr: flip_ldr(image, reference)?, flip_hdr: flip_hdr(image, reference)? })
+        same_size(image.size, reference.size)?;
+        Ok(Self { image, reference, flip_ldr: OnceCell::new(), flip_hdr: OnceCell::new() })
     }
 
     /// The map of LDR-FLIP.
     pub fn flip_ldr(&self) -> &FlipMap {
-        &self.flip_ldr
+        self.flip_ldr.get_or_init(|| flip::ldr(self.image, self.reference))
     }
 
     /// The map of HDR-FLIP; `None` when the reference is black.
     pub fn flip_hdr(&self) -> Option<&FlipMap> {
-        self.flip_hdr.as_ref()
+        self.flip_hdr.get_or_init(|| flip::hdr(self.image, self.reference)).as_ref()
     }
 
     /// One metric over an area; `None` where it is undefined: relative ones (and HDR-FLIP) where the reference is black.
@@ -152,7 +153,7 @@ impl<'a> Pair<'a> {
         if relative && self.is_black(area) {
             return Ok(None);
         }
-        let flip = |map: &FlipMap| Measured::plain(pointwise::mean(area.pixels().map(|i| f64::from(map.errors[i]))), None);
+        let mean_of = |map: &FlipMap| Measured::plain(pointwise::mean(area.pixels().map(|i| f64::from(map.errors[i]))), None);
         let absolute = |denominator| {
             let channels = pointwise::absolute(image, reference, area, denominator);
             Measured::plain(channels.iter().sum::<f64>() / 3.0, Some(channels))
@@ -163,8 +164,8 @@ impl<'a> Pair<'a> {
             Metric::Mape => Some(absolute(pointwise::of_reference)),
             Metric::Smape => Some(absolute(pointwise::of_both)),
             Metric::Psnr => Some(pointwise::psnr(image, reference, area)),
-            Metric::FlipLdr => Some(flip(&self.flip_ldr)),
-            Metric::FlipHdr => self.flip_hdr.as_ref().map(flip),
+            Metric::FlipLdr => Some(mean_of(self.flip_ldr())),
+            Metric::FlipHdr => self.flip_hdr().map(mean_of),
         })
     }
 

@@ -19,6 +19,7 @@ use aquifer_lab::{
         scene::{Compared, Request, SceneFacts, compare_scene},
         subject::Stage,
     },
+    page,
 };
 use aquifer_render::{Clock, Context, ContextOptions};
 use std::{
@@ -124,8 +125,7 @@ pub struct Args {
 
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     std::fs::create_dir_all(&args.output).map_err(|error| Failure::new(format!("cannot make `{}`: {error}", args.output.display())))?;
-    let path = args.output.join("report.json");
-    atomic::check_writable(&path)?;
+    atomic::check_writable(&args.output.join("report.html"))?;
     let entrants = entrants::entrants(&args.graphs, &args.settings, args.transport)?;
     let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
     let mut watch = Watch::new(ui);
@@ -147,10 +147,9 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     }
     report.warnings.extend(watch.finish());
     report.made = Made { clock: words::clock(clock).to_owned(), ..made(&context, report.made) };
-    let text = serde_json::to_vec_pretty(&report).map_err(|error| Failure::Failed(error.into()))?;
-    atomic::write(&path, &text)?;
+    page::write(&report, &args.output)?;
     report.warnings.iter().for_each(|warning| ui.warn(warning));
-    ui.note(&format!("wrote {}", path.display()));
+    ui.note(&format!("wrote {}", args.output.join("report.html").display()));
     if args.json { ui.json(&report) } else { ui.print(&words::report(&report)) }
 }
 

@@ -4,7 +4,7 @@ use super::{
     bench::{Bench, Entrant},
     error::CompareError,
     evaluate::{Rounds, Truth, cell_name},
-    judge,
+    further, judge,
     observer::Observer,
     reference::{Content, Reference, Tracer, shaders},
     report::{Cell, Protocol, ReferenceFacts, SceneResult},
@@ -230,10 +230,11 @@ impl Scene<'_> {
                 curve.push(self.measured.point(index, take, self.figures(index, take, &truth)?, time));
             }
             let cell = self.figures(index, take, &truth)?;
+            let metrics = further::metrics(&self.measured.films(index, &cell, take)?, &film)?;
             if self.measured.takes(index) > 1 {
                 curve.push(self.measured.point(index, take, cell.clone(), time));
             }
-            cells.push((index, Cell { curve, ..cell }));
+            cells.push((index, Cell { curve, metrics, ..cell }));
         }
         let name = format!("reference_{}.exr", file_name(&facts.transport));
         film.write(&self.images().join(&name))?;

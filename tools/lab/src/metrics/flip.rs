@@ -36,15 +36,25 @@ pub struct FlipMap {
 /// LDR-FLIP of linear colour; what lies outside 0 to 1 is cut off, as a screen does.
 pub fn flip_ldr(image: &Film, reference: &Film) -> Result<FlipMap, SizesDiffer> {
     same_size(image.size, reference.size)?;
-    let shown = |film: &Film| film.color.iter().map(|color| color.map(|c| c.clamp(0.0, 1.0))).collect::<Vec<_>>();
-    let size = image.size.map(|side| side as usize);
-    Ok(FlipMap { size: image.size, errors: Eye::new(PIXELS_PER_DEGREE).difference(size, &shown(image), &shown(reference)) })
+    Ok(ldr(image, reference))
 }
 
 /// HDR-FLIP of radiance; `None` when the reference is black, so that no exposure suits it.
 pub fn flip_hdr(image: &Film, reference: &Film) -> Result<Option<FlipMap>, SizesDiffer> {
     same_size(image.size, reference.size)?;
-    let Some(exposures) = Exposures::of(&reference.color) else { return Ok(None) };
+    Ok(hdr(image, reference))
+}
+
+/// [`flip_ldr`] of images known to have one size.
+pub(super) fn ldr(image: &Film, reference: &Film) -> FlipMap {
+    let shown = |film: &Film| film.color.iter().map(|color| color.map(|c| c.clamp(0.0, 1.0))).collect::<Vec<_>>();
+    let size = image.size.map(|side| side as usize);
+    FlipMap { size: image.size, errors: Eye::new(PIXELS_PER_DEGREE).difference(size, &shown(image), &shown(reference)) }
+}
+
+/// [`flip_hdr`] of images known to have one size.
+pub(super) fn hdr(image: &Film, reference: &Film) -> Option<FlipMap> {
+    let exposures = Exposures::of(&reference.color)?;
     let (eye, size) = (Eye::new(PIXELS_PER_DEGREE), image.size.map(|side| side as usize));
     let mut largest = vec![0.0_f32; reference.pixels()];
     for exposure in exposures.steps() {
@@ -53,7 +63,7 @@ pub fn flip_hdr(image: &Film, reference: &Film) -> Result<Option<FlipMap>, Sizes
         // `max` would pass over a pixel that is not a number.
         largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = if *largest >= error { *largest } else { error });
     }
-    Ok(Some(FlipMap { size: image.size, errors: largest }))
+    Some(FlipMap { size: image.size, errors: largest })
 }
 
 /// What depends on the viewing distance alone.

@@ -1,0 +1,213 @@
+//! The result in words.
+
+use super::words::{number, signed_percent};
+use crate::compare::report::{Better, BiasFigures, BiasVerdict, Cell, Pair, Ratio, Report, SceneResult};
+use serde::Serialize;
+
+/// What is said of one graph.
+#[derive(Debug, Serialize)]
+pub(super) struct Verdict {
+    pub(super) lead: String,
+    pub(super) sentences: Vec<Item>,
+}
+
+/// A marked sentence.
+#[derive(Debug, Serialize)]
+pub(super) struct Item {
+    kind: &'static str,
+    mark: &'static str,
+    text: String,
+}
+
+/// One verdict for every graph but the baseline; of a baseline alone, its own; then what is known of its bias.
+pub(super) fn of(report: &Report) -> Vec<Verdict> {
+    let graphs = 0..report.graphs.len();
+    if report.scenes.iter().all(|scene| scene.cells.is_empty()) {
+        return vec![Verdict { lead: "Nothing was measured.".into(), sentences: vec![] }];
+    }
+    let mut verdicts: Vec<Verdict> =
+        graphs.clone().skip(1).map(|graph| Verdict { lead: lead(report, graph), sentences: sentences(report, graph) }).collect();
+    if verdicts.is_empty() {
+        verdicts.push(Verdict { lead: alone(report), sentences: vec![] });
+    }
+    if let Some(last) = verdicts.last_mut() {
+        last.sentences.extend(graphs.filter_map(|graph| bias(report, graph)));
+    }
+    verdicts
+}
+
+/// The pair that is spoken of: the first of the graph in the scene.
+pub(super) fn pair(scene: &SceneResult, graph: usize) -> Option<&Pair> {
+    scene.pairs.iter().find(|pair| scene.cells.get(pair.other).is_some_and(|cell| cell.graph == graph))
+}
+
+/// What was judged: the ratio of errors, or of error × time where times differ.
+pub(super) fn ratio(pair: &Pair) -> Ratio {
+    if pair.equal_time { pair.mse } else { pair.mse_time }
+}
+
+/// How a pair is marked.
+pub(super) fn kind(better: Better) -> (&'static str, &'static str) {
+    match better {
+        Better::Other => ("better", "less error"),
+        Better::Baseline => ("worse", "more error"),
+        Better::NotResolved => ("open", "not resolved"),
+    }
+}
+
+fn lead(report: &Report, graph: usize) -> String {
+    let (name, baseline) = (&report.graphs[graph].name, &report.graphs[0].name);
+    let pairs: Vec<&Pair> = report.scenes.iter().filter_map(|scene| pair(scene, graph)).collect();
+    let (less, more) = (count(&pairs, Better::Other), count(&pairs, Better::Baseline));
+    let open = pairs.len() - less - more;
+    match pairs.as_slice() {
+        [] => return format!("`{name}` was not held against `{baseline}`."),
+        [only] if !only.sentence.is_empty() => return format!("{}.", only.sentence),
+        _ if less + more == 0 => {
+            return format!("Between `{name}` and `{baseline}` no difference of error can be shown on {}.", scenes(pairs.len()));
+        }
+        _ => {}
+    }
+    let mean = (pairs.iter().map(|pair| ratio(pair).value.ln()).sum::<f64>() / pairs.len() as f64).exp();
+    let (factor, word) = if mean >= 1.0 { (mean, "lower") } else { (1.0 / mean, "higher") };
+    let measure = if pairs.iter().all(|pair| pair.equal_time) { "mean square error at equal time" } else { "mean square error × time" };
+    let split = match (less, more, open) {
+        (_, 0, 0) => "lower on each".to_owned(),
+        (0, _, 0) => "higher on each".to_owned(),
+        _ => [(less, "lower"), (more, "higher"), (open, "not resolved")]
+            .iter()
+            .filter(|(n, _)| *n > 0)
+            .map(|(n, word)| format!("{word} on {n}"))
+            .collect::<Vec<_>>()
+            .join(", "),
+    };
+    format!(
+        "`{name}` has {} times {word} {measure} than `{baseline}` (geometric mean of {}; {split}).",
+        number(factor),
+        scenes(pairs.len())
+    )
+}
+
+fn count(pairs: &[&Pair], better: Better) -> usize {
+    pairs.iter().filter(|pair| pair.better == better).count()
+}
+
+fn scenes(n: usize) -> String {
+    if n == 1 { "1 scene".into() } else { format!("{n} scenes") }
+}
+
+/// A sentence for every scene, unless the lead is that sentence already.
+fn sentences(report: &Report, graph: usize) -> Vec<Item> {
+    let pairs: Vec<(&SceneResult, &Pair)> = report.scenes.iter().filter_map(|scene| Some((scene, pair(scene, graph)?))).collect();
+    if pairs.len() == 1 {
+        return vec![];
+    }
+    let item = |(scene, pair): &(&SceneResult, &Pair)| {
+        let (kind, mark) = kind(pair.better);
+        Item { kind, mark, text: format!("{}: {}", scene.name, pair.sentence) }
+    };
+    pairs.iter().map(item).collect()
+}
+
+fn alone(report: &Report) -> String {
+    let name = report.graphs.first().map_or("The graph", |graph| graph.name.as_str());
+    let said = report.scenes.iter().filter_map(|scene| scene.cells.first().map(|cell| (scene, cell)));
+    let said = said.map(|(scene, cell)| format!("{} in {} ms on {}", error(cell), number(cell.time_ms.median), scene.name));
+    format!("`{name}`: {}.", said.collect::<Vec<_>>().join("; "))
+}
+
+fn error(cell: &Cell) -> String {
+    match &cell.rel_mse {
+        Some(rel_mse) => format!("relMSE {}", number(rel_mse.median)),
+        None => format!("MSE {}", number(cell.mse.median)),
+    }
+}
+
+/// How a bias verdict is marked.
+pub(super) fn bias_kind(verdict: BiasVerdict) -> (&'static str, &'static str) {
+    match verdict {
+        BiasVerdict::Unbiased => ("unbiased", "unbiased"),
+        BiasVerdict::Biased => ("biased", "biased"),
+        BiasVerdict::NotResolved => ("open", "bias not resolved"),
+    }
+}
+
+/// What is known of one graph's bias over all scenes; the worst word of any scene is the word.
+fn bias(report: &Report, graph: usize) -> Option<Item> {
+    let figures: Vec<(&SceneResult, &BiasFigures)> =
+        report.scenes.iter().filter_map(|scene| Some((scene, figures(scene, graph)?))).collect();
+    let rank = |verdict| [BiasVerdict::Unbiased, BiasVerdict::NotResolved, BiasVerdict::Biased].iter().position(|known| *known == verdict);
+    let worst = figures.iter().map(|(_, figures)| figures.verdict).max_by_key(|&verdict| rank(verdict))?;
+    let (kind, mark) = bias_kind(worst);
+    let name = &report.graphs[graph].name;
+    let said = figures.iter().map(|(scene, figures)| format!("{} {}", scene.name, mean(figures.mean_difference, figures.mean_error)));
+    Some(Item { kind, mark, text: format!("`{name}`, mean against the reference: {}.", said.collect::<Vec<_>>().join(", ")) })
+}
+
+/// The bias figures of the graph's first cell that has some.
+fn figures(scene: &SceneResult, graph: usize) -> Option<&BiasFigures> {
+    scene.cells.iter().filter(|cell| cell.graph == graph).find_map(|cell| cell.bias.as_ref())
+}
+
+/// A mean with its standard error.
+pub(super) fn mean(difference: f64, error: f64) -> String {
+    format!("{} ± {} %", signed_percent(difference).trim_end_matches(" %"), number(100.0 * error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::report::GraphFacts;
+
+    fn report(results: &[(f64, Better)]) -> Report {
+        let graph = |name: &str| GraphFacts { name: name.into(), ..GraphFacts::default() };
+        let scene = |(i, &(value, better)): (usize, &(f64, Better))| SceneResult {
+            name: format!("scene{i}"),
+            cells: vec![Cell::default(), Cell { graph: 1, ..Cell::default() }],
+            pairs: vec![Pair {
+                other: 1,
+                mse: Ratio { value, interval: None },
+                better,
+                equal_time: true,
+                sentence: format!("{value}"),
+                ..Pair::default()
+            }],
+            ..SceneResult::default()
+        };
+        Report { graphs: vec![graph("old"), graph("new")], scenes: results.iter().enumerate().map(scene).collect(), ..Report::default() }
+    }
+
+    #[test]
+    fn leads() {
+        let lead = |results: &[(f64, Better)]| of(&report(results)).remove(0).lead;
+        assert_eq!(
+            lead(&[(2.0, Better::Other), (8.0, Better::Other)]),
+            "`new` has 4.00 times lower mean square error at equal time than `old` (geometric mean of 2 scenes; lower on each)."
+        );
+        assert_eq!(
+            lead(&[(0.25, Better::Baseline), (1.0, Better::NotResolved)]),
+            "`new` has 2.00 times higher mean square error at equal time than `old` (geometric mean of 2 scenes; higher on 1, not resolved on 1)."
+        );
+        assert_eq!(
+            lead(&[(1.1, Better::NotResolved), (0.9, Better::NotResolved)]),
+            "Between `new` and `old` no difference of error can be shown on 2 scenes."
+        );
+        assert_eq!(lead(&[(3.0, Better::Other)]), "3.");
+        assert_eq!(lead(&[]), "Nothing was measured.");
+    }
+
+    #[test]
+    fn one_biased_scene_is_enough() {
+        let mut report = report(&[(2.0, Better::Other), (2.0, Better::Other)]);
+        for (scene, verdict) in [(0, BiasVerdict::Biased), (1, BiasVerdict::Unbiased)] {
+            report.scenes[scene].cells[1].bias =
+                Some(BiasFigures { verdict, mean_difference: -0.02, mean_error: 0.001, ..BiasFigures::default() });
+        }
+        let items = of(&report).remove(0).sentences;
+        assert_eq!(items.len(), 3);
+        assert_eq!(
+            (items[2].kind, items[2].text.as_str()),
+            ("biased", "`new`, mean against the reference: scene0 −2.00 ± 0.100 %, scene1 −2.00 ± 0.100 %.")
+        );
+    }
+}
