@@ -48,6 +48,10 @@ fn index_of(pixel: vec2<u32>) -> u32 {
     return pixel.y * frame.extent.x + pixel.x;
 }
 
+fn pixel_of(index: u32) -> vec2<u32> {
+    return vec2<u32>(index % frame.extent.x, index / frame.extent.x);
+}
+
 /// Unit world direction through film point `film`, in pixels from the top left.
 fn camera_direction(camera: Camera, film: vec2<f32>) -> vec3<f32> {
     let extent = vec2<f32>(frame.extent);

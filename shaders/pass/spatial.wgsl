@@ -1,17 +1,21 @@
-//! Spatial reuse: joins each pixel's reservoir with those of pixels around it.
+//! Spatial reuse: joins each pixel's reservoir with those of pixels around it, and with what this pass itself left there last frame.
 //!
-//! Bitterli et al. 2020, § 3.2 and § 5. Pixels are drawn uniformly in a disk, and rejected by the g-buffer alone. Rounds are `repeat`, with
-//! `feed.current = "reservoir"`. With an unbiased rule in slot `mis` the pass is unbiased.
+//! Pixels are drawn uniformly in a disk, and rejected by the g-buffer alone. Rounds are `repeat`, with `feed.current = "reservoir"`
+//! (Bitterli et al. 2020, § 3.2 and § 5). With `history`, `previous_surface` and `motion` wired, the pixel's own result of last frame joins, and
+//! while it counts little more pixels are asked, and their results of last frame too (Ouyang et al. 2021, alg. 4). The paper's listing leaves
+//! the pixel's own temporal reservoir out; here it is always the canonical input, which alone covers all that the pixel can use.
+//! With an unbiased rule in slot `mis` the pass is unbiased: who is asked depends on the g-buffer and on confidences, never on a sample.
 
 import package::base::math::{HUGE};
 import package::base::rng::{rng_next4};
-import package::frame::frame::{NOW, frame, index_of, inside};
+import package::frame::frame::{BEFORE, NOW, frame, index_of, inside, pixel_of};
 import package::frame::random::{rng_for};
 import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
-import package::restir::neighbour::{disk, on_film, similar, similarity};
+import package::restir::neighbour::{NOWHERE, neighbour, similarity};
+import package::restir::reproject::{Search, pixel_before};
 import package::restir::reservoir::{Reservoir};
 import package::slot::mis::{combine};
-import package::surface::{SurfaceRecord, is_surface, unpack_surface};
+import package::surface::{is_surface, unpack_surface};
 
 struct Params {
     /// Radius of the disk, in pixels of an image of `rows` rows.
@@ -22,6 +26,14 @@ struct Params {
     /// @default 1080
     /// @range 0 16384
     rows: f32,
+    /// What the radius shrinks by, for the pixel's further draws, where a drawn pixel was not alike. 1: it stays.
+    /// @default 1
+    /// @range 0 1
+    shrink: f32,
+    /// Radius at which it shrinks no further, pixels.
+    /// @default 3
+    /// @range 0 1000
+    least: f32,
     /// Largest angle between normals, degrees.
     /// @default 25
     /// @range 0 180
@@ -30,15 +42,29 @@ struct Params {
     /// @default 0.1
     /// @range 0 1
     depth: f32,
+    /// Most that a history counts, in confidences of a fresh reservoir.
+    /// @default 500
+    /// @range 1 500
+    cap: f32,
+    /// Confidence of the pixel's own history below which `more_taps` pixels are asked instead, and their histories too. 0: never.
+    /// @default 0
+    /// @range 0 500
+    low: f32,
 }
 
 /// Pixels that are asked.
 /// @range 1 11
 override taps: u32 = 5u;
+/// Pixels that are asked while the pixel's own history counts less than `low`.
+/// @range 1 9
+override more_taps: u32 = 9u;
 
 @group(1) @binding(0) var<uniform> params: Params;
+/// From this frame's film position to last frame's, pixels.
+/// @optional
+@group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
 /// Joined.
-@group(1) @binding(1) var<storage, read_write> reservoir: array<Reservoir>;
+@group(1) @binding(2) var<storage, read_write> reservoir: array<Reservoir>;
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
@@ -49,20 +75,34 @@ override taps: u32 = 5u;
         return;
     }
     var rng = rng_for(id.xy);
-    let s = unpack_surface(record, NOW);
-    let radius = params.radius * select(1.0, f32(frame.extent.y) / params.rows, params.rows > 0.0);
     let limits = similarity(params.normal, params.depth);
+    let exact = Search(0u, 0.0);
     var inputs: array<Input, MAX_INPUTS>;
     inputs[0] = input_of(at, NOW, HUGE);
     var count = 1u;
-    for (var i = 0u; i < min(taps, MAX_INPUTS - 1u); i++) {
-        let there = vec2<i32>(id.xy) + vec2<i32>(round(radius * disk(rng_next4(&rng).xy)));
-        if (!on_film(there, frame.extent) || all(there == vec2<i32>(id.xy))) { continue; }
-        let index = index_of(vec2<u32>(there));
-        let other = surface[index];
-        if (!is_surface(other) || !similar(record, record.distance, other, limits)) { continue; }
-        inputs[count] = input_of(index, NOW, HUGE);
-        count += 1u;
+    var own = 0.0;
+    let before = pixel_before(id.xy, motion[at], record, exact, limits, &rng);
+    if (before != NOWHERE) {
+        inputs[1] = input_of(before, BEFORE, params.cap);
+        own = inputs[1].confidence;
+        count = 2u;
     }
-    reservoir[at] = combine(s, &inputs, count, &rng);
+    let few = own < params.low;
+    var radius = params.radius * select(1.0, f32(frame.extent.y) / params.rows, params.rows > 0.0);
+    for (var i = 0u; i < select(taps, more_taps, few); i++) {
+        let other = neighbour(id.xy, record, radius, limits, rng_next4(&rng).xy);
+        if (other == NOWHERE) {
+            radius = max(radius * params.shrink, min(radius, params.least));
+            continue;
+        }
+        inputs[count] = input_of(other, NOW, HUGE);
+        count += 1u;
+        if (!few) { continue; }
+        let other_before = pixel_before(pixel_of(other), motion[other], surface[other], exact, limits, &rng);
+        if (other_before != NOWHERE) {
+            inputs[count] = input_of(other_before, BEFORE, params.cap);
+            count += 1u;
+        }
+    }
+    reservoir[at] = combine(unpack_surface(record, NOW), &inputs, count, &rng);
 }

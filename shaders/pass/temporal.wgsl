@@ -5,15 +5,14 @@
 //! depends on the g-buffer alone, and capping its confidence changes no weight: with an unbiased rule in slot `mis` the pass is unbiased.
 
 import package::base::math::{HUGE};
-import package::base::rng::{Rng, rng_next4};
-import package::frame::frame::{BEFORE, NOW, camera_at, film_sample, frame, index_of, inside};
+import package::frame::frame::{BEFORE, NOW, index_of, inside};
 import package::frame::random::{rng_for};
-import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, previous_surface, surface};
-import package::restir::neighbour::{disk, on_film, similar, similarity};
+import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
+import package::restir::neighbour::{NOWHERE, similarity};
+import package::restir::reproject::{Search, pixel_before};
 import package::restir::reservoir::{Reservoir};
-import package::scene::geometry::{position_of};
 import package::slot::mis::{combine};
-import package::surface::{SurfaceRecord, is_surface, unpack_surface};
+import package::surface::{is_surface, unpack_surface};
 
 struct Params {
     /// Most that a history counts, in confidences of a fresh reservoir.
@@ -44,45 +43,24 @@ override tries: u32 = 2u;
 /// Both joined.
 @group(1) @binding(2) var<storage, read_write> reservoir: array<Reservoir>;
 
-const NOWHERE: u32 = 0xffffffffu;
-
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
     let at = index_of(id.xy);
     let record = surface[at];
-    if (!is_surface(record) || frame.history_valid == 0u) {
+    if (!is_surface(record)) {
         reservoir[at] = current[at];
         return;
     }
     var rng = rng_for(id.xy);
-    let there = pixel_before(id.xy, record, &rng);
-    if (there == NOWHERE) {
+    let limits = similarity(params.normal, params.depth);
+    let before = pixel_before(id.xy, motion[at], record, Search(tries, params.search), limits, &rng);
+    if (before == NOWHERE) {
         reservoir[at] = current[at];
         return;
     }
     let s = unpack_surface(record, NOW);
     var inputs: array<Input, MAX_INPUTS>;
     inputs[0] = input_of(at, NOW, HUGE);
-    inputs[1] = input_of(there, BEFORE, params.cap);
+    inputs[1] = input_of(before, BEFORE, params.cap);
     reservoir[at] = combine(s, &inputs, 2u, &rng);
-}
-
-/// Index of the pixel of last frame that saw this surface, or one like it.
-fn pixel_before(pixel: vec2<u32>, record: SurfaceRecord, rng: ptr<function, Rng>) -> u32 {
-    let film = film_sample(frame.camera, pixel) + motion[index_of(pixel)];
-    let jitter = vec2<f32>(frame.camera_prev.jitter_x, frame.camera_prev.jitter_y);
-    let before = position_of(record.instance, record.triangle, record.barycentrics, BEFORE);
-    let distance = length(before - camera_at(BEFORE).position);
-    let limits = similarity(params.normal, params.depth);
-    for (var i = 0u; i <= tries; i++) {
-        var offset = vec2<f32>(0.0);
-        if (i > 0u) { offset = params.search * disk(rng_next4(rng).xy); }
-        // The nearest of last frame's film samples.
-        let there = vec2<i32>(floor(film + offset - jitter + 0.5));
-        if (!on_film(there, frame.extent)) { continue; }
-        let index = index_of(vec2<u32>(there));
-        let other = previous_surface[index];
-        if (is_surface(other) && similar(record, distance, other, limits)) { return index; }
-    }
-    return NOWHERE;
 }

@@ -11,7 +11,8 @@ import package::slot::domain::{Sample, p_hat, shift, visible};
 import package::slot::visibility::{IN_TARGET};
 import package::surface::{Surface, SurfaceRecord, unpack_surface};
 
-const MAX_INPUTS = 12u;
+/// The receiver, its own history, nine neighbours and their histories.
+const MAX_INPUTS = 20u;
 
 /// Names a reservoir and the surface that it was made for. Names, not copies: an array of copies would not fit into registers.
 struct Input {

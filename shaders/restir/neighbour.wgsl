@@ -2,7 +2,12 @@
 
 import package::base::math::{PI};
 import package::base::pack::{unpack_unit};
-import package::surface::{SurfaceRecord};
+import package::frame::frame::{frame, index_of};
+import package::restir::inputs::{surface};
+import package::surface::{SurfaceRecord, is_surface};
+
+/// No pixel.
+const NOWHERE: u32 = 0xffffffffu;
 
 /// Similarity of two surfaces (Bitterli et al. 2020, § 5: 25° and 10 %).
 struct Similarity {
@@ -31,4 +36,14 @@ fn disk(u: vec2<f32>) -> vec2<f32> {
 /// Is there such a pixel?
 fn on_film(pixel: vec2<i32>, extent: vec2<u32>) -> bool {
     return all(pixel >= vec2<i32>(0)) && all(pixel < vec2<i32>(extent));
+}
+
+/// Index of a pixel uniform in the disk of that radius around `pixel`, whose surface is like `record`; `NOWHERE` where the one drawn is not.
+fn neighbour(pixel: vec2<u32>, record: SurfaceRecord, radius: f32, limits: Similarity, u: vec2<f32>) -> u32 {
+    let there = vec2<i32>(pixel) + vec2<i32>(round(radius * disk(u)));
+    if (!on_film(there, frame.extent) || all(there == vec2<i32>(pixel))) { return NOWHERE; }
+    let index = index_of(vec2<u32>(there));
+    let other = surface[index];
+    if (!is_surface(other) || !similar(record, record.distance, other, limits)) { return NOWHERE; }
+    return index;
 }

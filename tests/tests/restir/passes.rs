@@ -78,8 +78,8 @@ fn bugs_of_passes_show() {
         (
             "neighbours rejected because of their samples",
             "pass/spatial",
-            "if (!is_surface(other) ||",
-            "if (!is_surface(other) || current[index].weight.value <= 0.0 ||",
+            "if (other == NOWHERE) {",
+            "if (other == NOWHERE || current[other].weight.value <= 0.0) {",
         ),
         (
             "history's p̂ W kept from last frame",
