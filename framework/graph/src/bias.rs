@@ -14,15 +14,27 @@ pub struct BiasFinding {
     pub what: String,
     /// Why that biases.
     pub why: String,
+    /// The fact that a scene must have for it; `None` where nothing more is asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub given: Option<String>,
 }
 
 impl Graph {
     /// Everything that biases the result; empty when the graph is unbiased. Passes that the output does not need are not asked.
     pub fn bias(&self) -> Vec<BiasFinding> {
+        self.findings(|bias| bias.given.is_none())
+    }
+
+    /// What would bias the result of other scenes, by facts that the scene has not; without a scene, by all such facts.
+    pub fn bias_elsewhere(&self) -> Vec<BiasFinding> {
+        self.findings(|bias| bias.given.is_some())
+    }
+
+    fn findings(&self, asked: impl Fn(&Bias) -> bool) -> Vec<BiasFinding> {
         let needed = self.needed();
         let mut findings: Vec<BiasFinding> = Vec::new();
         for node in needed.into_iter().map(|node| &self.nodes[node]) {
-            for bias in node.contract.bias.iter().filter(|bias| applies(node, bias)) {
+            for bias in node.contract.bias.iter().filter(|bias| asked(bias) && applies(node, bias)) {
                 let finding = self.finding(node, bias);
                 if !findings.contains(&finding) {
                     findings.push(finding);
@@ -49,7 +61,7 @@ impl Graph {
             (None, None) => format!("kind `{}`", node.kind),
         };
         let place = self.sources.place(span.copied().unwrap_or(node.spans.name));
-        BiasFinding { pass: node.pass.clone(), place, what, why: bias.why.clone() }
+        BiasFinding { pass: node.pass.clone(), place, what, why: bias.why.clone(), given: bias.given.clone() }
     }
 }
 

@@ -126,6 +126,8 @@ pub struct Bias {
     pub unless: Option<String>,
     /// Why.
     pub why: String,
+    /// The fact that a scene must have for it; `None` where the scene has it, or where none is asked.
+    pub given: Option<String>,
 }
 
 /// Why a kind of pass has no contract.

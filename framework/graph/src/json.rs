@@ -13,6 +13,7 @@ impl Graph {
             "output": self.port_name(self.output),
             "knob": self.knob,
             "bias": self.bias(),
+            "bias_elsewhere": self.bias_elsewhere(),
             "nodes": self.nodes.iter().map(|node| self.node_json(node)).collect::<Vec<Value>>(),
         })
     }

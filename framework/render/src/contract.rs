@@ -17,7 +17,8 @@ pub(crate) fn contract(interface: &Interface) -> Result<Contract, String> {
         ..Contract::default()
     };
     for note in &interface.bias {
-        contract.bias.push(Bias { slot: slot_of(interface, &note.module), param: None, unless: None, why: note.why.clone() });
+        let slot = slot_of(interface, &note.module);
+        contract.bias.push(Bias { slot, why: note.why.clone(), given: note.given.clone(), ..Bias::default() });
     }
     for binding in own {
         match &binding.resource {
@@ -151,7 +152,7 @@ fn add_param(declared: Declared<'_>, contract: &mut Contract) -> Result<(), Stri
     let range = tag(tags, "range").map(|text| range(text).ok_or_else(|| wrong("range", text))).transpose()?;
     if let Some(value) = tag(tags, "unbiased") {
         let why = tag(tags, "why").unwrap_or(doc).to_owned();
-        contract.bias.push(Bias { slot, param: Some(name.to_owned()), unless: Some(value.to_owned()), why });
+        contract.bias.push(Bias { slot, param: Some(name.to_owned()), unless: Some(value.to_owned()), why, given: None });
     }
     contract.params.push(Param { name: name.to_owned(), default, range, choices, live, doc: doc.to_owned() });
     Ok(())
@@ -271,7 +272,7 @@ mod tests {
         let found: Vec<_> = contract.params.iter().map(|param| (param.name.as_str(), param.default, param.live)).collect();
         assert_eq!(found, [("exposure", Value::F32(1.5), true), ("curve", Value::U32(1), true), ("taps", Value::U32(5), false)]);
         assert_eq!(contract.params[0].range, Some((-8.0, 8.0)));
-        let bias = Bias { slot: None, param: Some("curve".into()), unless: Some("linear".into()), why: "it clips".into() };
+        let bias = Bias { slot: None, param: Some("curve".into()), unless: Some("linear".into()), why: "it clips".into(), given: None };
         assert_eq!(contract.bias, [bias]);
     }
 

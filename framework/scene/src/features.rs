@@ -43,6 +43,8 @@ features! {
     vertex_colors,
     /// Some material may be metallic.
     metals,
+    /// Some material reflects light not only diffusely.
+    glossy,
     /// Some material shows both its sides.
     double_sided,
     /// Some material is unlit.
@@ -81,6 +83,7 @@ impl Features {
         self.normal_maps |= material.normal_texture.is_some();
         self.alpha |= material.alpha != Alpha::Opaque;
         self.metals |= material.metallic > 0.0;
+        self.glossy |= material.metallic > 0.0 || material.specular > 0.0;
         self.double_sided |= material.double_sided;
         self.unlit |= material.unlit;
     }
@@ -127,7 +130,7 @@ mod tests {
 
     fn scene() -> Scene {
         let mesh = Mesh { materials: vec![1], triangles: vec![[0; 3]], ..Mesh::default() };
-        let plain = Material { metallic: 0.0, ..Material::default() };
+        let plain = Material { metallic: 0.0, specular: 0.0, ..Material::default() };
         let lamp = Material { emission: Vec3::ONE, ..plain.clone() };
         let metal_nobody_uses = Material::default();
         Scene {
@@ -159,6 +162,6 @@ mod tests {
 
     #[test]
     fn every_name_is_listed() {
-        assert!(Features::NAMES.contains(&"moving_camera") && Features::NAMES.len() == 13);
+        assert!(Features::NAMES.contains(&"moving_camera") && Features::NAMES.len() == 14);
     }
 }

@@ -89,6 +89,7 @@ fn cameras_lights_and_features() {
         "alpha",
         "double_sided",
         "emissive_meshes",
+        "glossy",
         "metals",
         "moving_lights",
         "moving_objects",

@@ -11,13 +11,33 @@ pub struct Doc {
     pub tags: Vec<(String, String)>,
 }
 
+/// `bias: why`, or `bias (condition): why`, whose condition is a fact of the scene, or `slot = filling`.
+#[derive(Debug, PartialEq)]
+pub struct BiasLine {
+    /// Under which it biases; `None`: always.
+    pub condition: Option<String>,
+    /// The reason.
+    pub why: String,
+}
+
+impl BiasLine {
+    fn read(line: &str) -> Option<Self> {
+        let rest = line.strip_prefix("bias")?;
+        if let Some(why) = rest.strip_prefix(':') {
+            return Some(BiasLine { condition: None, why: why.trim().to_owned() });
+        }
+        let (condition, why) = rest.strip_prefix(" (")?.split_once("):")?;
+        Some(BiasLine { condition: Some(condition.trim().to_owned()), why: why.trim().to_owned() })
+    }
+}
+
 /// All comments of one module that mean something to the host.
 #[derive(Debug, Default)]
 pub struct Comments {
     /// The `//!` lines at the head, less `bias:` and `@tag` ones.
     pub manual: String,
-    /// Reasons of `//! bias:` lines.
-    pub bias: Vec<String>,
+    /// `//! bias:` lines.
+    pub bias: Vec<BiasLine>,
     docs: HashMap<String, Doc>,
 }
 
@@ -52,8 +72,8 @@ impl Comments {
     }
 
     fn head(&mut self, line: &str) {
-        match line.strip_prefix("bias:") {
-            Some(why) => self.bias.push(why.trim().to_owned()),
+        match BiasLine::read(line) {
+            Some(bias) => self.bias.push(bias),
             None if line.starts_with('@') => {}
             None => {
                 self.manual.push_str(line);
@@ -122,13 +142,14 @@ mod tests {
 
     #[test]
     fn comments_are_found_where_they_belong() {
-        let text = "//! Tone mapping.\n//!\n//! bias: none of this is linear\nimport package::base::math::{PI};\n\
+        let text = "//! Tone mapping.\n//!\n//! bias: none of this is linear\n//! bias (metals): they are dull\nimport package::base::math::{PI};\n\
             struct Params {\n    /// Stops.\n    /// @default 0\n    /// @range -16 16\n    exposure: f32,\n    plain: u32,\n}\n\
             @group(1) @binding(0) var<uniform> params: Params;\n/// What comes in.\n/// @optional\n\
             @group(1) @binding(1) var<storage, read> color: array<vec4<f32>>;\n/// Taps.\n@id(3) override taps: u32 = 5u;\n";
         let comments = Comments::read(text);
         assert_eq!(comments.manual, "Tone mapping.\n\n");
-        assert_eq!(comments.bias, ["none of this is linear"]);
+        let bias = |condition: Option<&str>, why: &str| BiasLine { condition: condition.map(str::to_owned), why: why.to_owned() };
+        assert_eq!(comments.bias, [bias(None, "none of this is linear"), bias(Some("metals"), "they are dull")]);
         assert_eq!(comments.of("Params.exposure").tags, [("default".into(), "0".into()), ("range".into(), "-16 16".into())]);
         assert_eq!(comments.of("Params.plain"), Doc::default());
         assert_eq!(comments.of("color"), Doc { text: "What comes in.".into(), tags: vec![("optional".into(), String::new())] });

@@ -13,7 +13,7 @@ pub struct Interface {
     pub overrides: Vec<Override>,
     /// Slots reached, with the module path that fills each (`domain` → `domain/di`).
     pub slots: Vec<(String, String)>,
-    /// `//! bias:` lines of every module reached.
+    /// `//! bias:` lines of every module reached, less those of slots filled otherwise.
     pub bias: Vec<BiasNote>,
 }
 
@@ -170,13 +170,15 @@ pub enum Scalar {
     F32,
 }
 
-/// `//! bias: why` of a module.
+/// `//! bias: why` of a module, or `//! bias (condition): why`; a condition is a fact of the scene, or `slot = filling`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BiasNote {
     /// Module path.
     pub module: String,
     /// Why.
     pub why: String,
+    /// The fact that the scene would have to have; `None` where it has it, or where none is asked.
+    pub given: Option<String>,
 }
 
 impl Layout {

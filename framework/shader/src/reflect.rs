@@ -2,7 +2,10 @@
 
 use crate::{
     BiasNote, Binding, Entry, Interface, Layout, Library, Member, Output, Override, ResourceKind, Scalar, ShaderError, Specialisation,
-    Stage, comments::Comments, compose::unmangle, slots,
+    Stage,
+    comments::{BiasLine, Comments},
+    compose::unmangle,
+    slots,
 };
 use naga::{AddressSpace, Handle, ScalarKind, StorageAccess, TypeInner, common::wgsl::TypeContext, proc::Layouter, valid::GlobalUse};
 use std::collections::BTreeMap;
@@ -238,7 +241,19 @@ impl Reader<'_> {
     }
 
     fn bias(&self) -> Vec<BiasNote> {
-        let notes = self.comments.iter().flat_map(|(path, comments)| comments.bias.iter().map(move |why| (path, why)));
-        notes.map(|(path, why)| BiasNote { module: (*path).to_owned(), why: why.clone() }).collect()
+        let lines = self.comments.iter().flat_map(|(path, comments)| comments.bias.iter().map(move |line| (path, line)));
+        let of_slots = lines.filter(|(_, line)| self.slot_holds(line.condition.as_deref()));
+        let note = |(path, line): (&&str, &BiasLine)| {
+            let fact = line.condition.clone().filter(|condition| !condition.contains('='));
+            let given = fact.filter(|fact| !self.what.features.contains(fact));
+            BiasNote { module: (*path).to_owned(), why: line.why.clone(), given }
+        };
+        of_slots.map(note).collect()
+    }
+
+    /// False for `slot = filling` where the slot is filled otherwise.
+    fn slot_holds(&self, condition: Option<&str>) -> bool {
+        let Some((slot, filling)) = condition.and_then(|condition| condition.split_once('=')) else { return true };
+        self.what.slots.get(slot.trim()).is_some_and(|found| found == filling.trim())
     }
 }

@@ -23,7 +23,8 @@ const RESERVOIR: &str = "import package::slot::domain::{Sample};\nstruct Reservo
 const DI: &str = "struct Sample { light: u32, uv: vec2<f32> }\nfn draw() -> Sample { return Sample(1u, vec2<f32>(0.5)); }\n";
 const GI: &str = "/// Cells of the grid.\n/// @extent fixed 64\n@group(1) @binding(0) var<storage, read> cells: array<vec4<f32>>;\n\
     struct Sample { point: vec3<f32>, radiance: vec3<f32> }\nfn draw() -> Sample { return Sample(cells[0].xyz, vec3<f32>(0.0)); }\n";
-const INITIAL: &str = "//! Draws one sample.\n//! bias: it is a test\n\
+const INITIAL: &str = "//! Draws one sample.\n//! bias: it is a test\n//! bias (bright): it dazzles\n\
+    //! bias (domain = gi): it is remembered\n\
     import package::restir::reservoir::{Reservoir};\nimport package::slot::domain::{draw};\nimport package::scene::light::{lights};\n\
     struct Params {\n    /// Scale of it all.\n    /// @default 0.5\n    scale: f32,\n    taps1: u32,\n}\n\
     @group(1) @binding(0) var<uniform> params: Params;\n\
@@ -45,11 +46,14 @@ fn ports_come_from_use_and_slots() {
     let di = all().compose(&of("pass/initial", &[("domain", "di")], &[])).unwrap().interface;
     let names: Vec<_> = di.bindings.iter().map(|b| (b.group, b.binding, b.name.as_str(), b.read, b.written)).collect();
     assert_eq!(names, [(1, 0, "params", true, false), (1, 1, "reservoir", false, true)]);
-    assert_eq!(di.bias, [BiasNote { module: "pass/initial".into(), why: "it is a test".into() }]);
+    let note =
+        |why: &str, given: Option<&str>| BiasNote { module: "pass/initial".into(), why: why.into(), given: given.map(str::to_owned) };
+    assert_eq!(di.bias, [note("it is a test", None), note("it dazzles", Some("bright"))]);
     assert_eq!(di.manual, "Draws one sample.\n");
     assert_eq!(di.slots, [("domain".to_owned(), "domain/di".to_owned())]);
 
     let gi = all().compose(&of("pass/initial", &[("domain", "gi")], &["bright"])).unwrap().interface;
+    assert_eq!(gi.bias, [note("it is a test", None), note("it dazzles", None), note("it is remembered", None)]);
     let cells = gi.bindings.iter().find(|b| b.name == "cells").unwrap();
     assert_eq!((cells.module.as_str(), cells.tags[0].1.as_str(), cells.doc.as_str()), ("domain/gi", "fixed 64", "Cells of the grid."));
     assert!(gi.bindings.iter().any(|b| b.group == 0 && b.module == "scene/light" && b.name == "lights"));

@@ -1,7 +1,7 @@
 //! `aquifer check GRAPH`
 
 use crate::{failure::Failure, source::GraphArgs, ui::Ui};
-use aquifer_graph::{Graph, NeedsAll, Plan};
+use aquifer_graph::{BiasFinding, Graph, NeedsAll, Plan};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -28,6 +28,21 @@ fn report(graph: &Graph, plan: &Plan) -> String {
         [] => lines.push("unbiased".to_owned()),
         _ => lines.push("biased, because".to_owned()),
     }
-    lines.extend(bias.iter().map(|finding| format!("  {}: pass `{}`, {}: {}", finding.place, finding.pass, finding.what, finding.why)));
+    lines.extend(bias.iter().map(|finding| told(finding, "")));
+    lines.extend(elsewhere(graph));
     lines.join("\n")
+}
+
+fn told(finding: &BiasFinding, given: &str) -> String {
+    format!("  {}: {given}pass `{}`, {}: {}", finding.place, finding.pass, finding.what, finding.why)
+}
+
+/// What biases by a fact of the scene: said once for each reason, since no scene is given.
+fn elsewhere(graph: &Graph) -> Vec<String> {
+    let mut findings = graph.bias_elsewhere();
+    let mut seen = std::collections::BTreeSet::new();
+    findings.retain(|finding| seen.insert(finding.why.clone()));
+    let head = (!findings.is_empty()).then(|| "and in some scenes biased, because".to_owned());
+    let line = |finding: &BiasFinding| told(finding, &format!("with `{}`, ", finding.given.as_deref().unwrap_or_default()));
+    head.into_iter().chain(findings.iter().map(line)).collect()
 }
