@@ -33,62 +33,83 @@ fn power_heuristic(a: f32, b: f32) -> f32 {
     return 1.0 / (1.0 + square(b / a));
 }
 
-/// Light that one shadow ray to a proposed light brings through `s`, weighted against BSDF sampling.
-fn next_event(s: Surface, rng: ptr<function, Rng>) -> vec3<f32> {
-    if (light_count() == 0u) { return vec3<f32>(0.0); }
+/// Light that comes to a surface along unit `direction`: `value` · `weight` is what one sample of a technique stands for.
+struct Incident {
+    direction: vec3<f32>,
+    /// Radiance by solid angle; of lights without extent, what they send.
+    value: vec3<f32>,
+    /// 1 / density, times the technique's share; 0 where nothing comes.
+    weight: f32,
+}
+
+/// One proposed light, seen through one shadow ray, weighted against BSDF sampling.
+fn next_event(s: Surface, rng: ptr<function, Rng>) -> Incident {
+    var none: Incident;
+    if (light_count() == 0u) { return none; }
     let c = propose(s.position, rng_bits(rng));
     let p = light_point(c.light, c.uv, s.when);
     let arrival = arrive(p, s.position);
-    let value = scatter(s, arrival.direction) * arrival.value * c.weight;
-    if (max3(value) <= 0.0) { return vec3<f32>(0.0); }
+    if (max3(scatter(s, arrival.direction) * arrival.value) <= 0.0) { return none; }
     rays_traced += 1u;
-    if (occluded(shadow_ray(leave(s.position, s.geometric, arrival.direction, s.size), p), s.when)) { return vec3<f32>(0.0); }
-    if (arrival.jacobian == 0.0) { return value; }
+    if (occluded(shadow_ray(leave(s.position, s.geometric, arrival.direction, s.size), p), s.when)) { return none; }
+    if (arrival.jacobian == 0.0) { return Incident(arrival.direction, arrival.value, c.weight); }
     let by_light = proposal_pdf(c.light, s.position) / arrival.jacobian;
-    return value * power_heuristic(by_light, scatter_pdf(s, arrival.direction));
+    let share = power_heuristic(by_light, scatter_pdf(s, arrival.direction));
+    return Incident(arrival.direction, arrival.value / arrival.jacobian, c.weight * arrival.jacobian * share);
 }
 
-/// Emission met by a BSDF-sampled ray of density `pdf`, weighted against next-event estimation.
-fn met(hit: Hit, ray: Ray, pdf: f32, from_surface: Surface) -> vec3<f32> {
+/// Emission met by a ray from `s` whose direction the BSDF drew with density `pdf`, weighted against next-event estimation.
+fn met(hit: Hit, ray: Ray, pdf: f32, s: Surface) -> Incident {
+    var light = NONE;
+    var radiance = vec3<f32>(0.0);
+    var jacobian = 0.0;
     if (hit.instance == NONE) {
         @if(environment) {
-            let jacobian = environment_jacobian(ray.direction);
-            return environment_radiance(ray.direction) * light_share(light_count() - 1u, jacobian, pdf, from_surface);
+            light = light_count() - 1u;
+            radiance = environment_radiance(ray.direction);
+            jacobian = environment_jacobian(ray.direction);
         }
-        return vec3<f32>(0.0);
+    } else {
+        light = light_of(hit);
+        if (light != NONE) { radiance = emitted(hit, -ray.direction, s.when); }
+        if (max3(radiance) > 0.0) { jacobian = jacobian_of(light, hit, s.position, s.when); }
     }
-    let light = light_of(hit);
-    if (light == NONE) { return vec3<f32>(0.0); }
-    let radiance = emitted(hit, -ray.direction, from_surface.when);
-    if (max3(radiance) <= 0.0) { return vec3<f32>(0.0); }
-    return radiance * light_share(light, jacobian_of(light, hit, from_surface.position, from_surface.when), pdf, from_surface);
+    if (light == NONE || max3(radiance) <= 0.0) { return Incident(ray.direction, vec3<f32>(0.0), 0.0); }
+    var share = 1.0;
+    if (jacobian > 0.0) { share = power_heuristic(pdf, proposal_pdf(light, s.position) / jacobian); }
+    return Incident(ray.direction, radiance, share / pdf);
 }
 
-/// BSDF sampling's share of light `light`, whose dω/duv is `jacobian`.
-fn light_share(light: u32, jacobian: f32, pdf: f32, s: Surface) -> f32 {
-    if (jacobian <= 0.0) { return 1.0; }
-    return power_heuristic(pdf, proposal_pdf(light, s.position) / jacobian);
-}
-
-/// Radiance through `start` towards its viewer, from paths of the transport's lengths.
-fn walk(start: Surface, rng: ptr<function, Rng>) -> vec3<f32> {
+/// Radiance through `start` towards its viewer, from paths of the transport's lengths. `start` is their scattering `first`; what scatters
+/// again after it is weighted by `onward`, and not traced where that is 0.
+fn walk(start: Surface, first: u32, onward: f32, rng: ptr<function, Rng>) -> vec3<f32> {
     var s = start;
     var throughput = vec3<f32>(1.0);
     var radiance = vec3<f32>(0.0);
-    for (var k = 1u; k <= transport_max; k++) {
+    for (var k = first; k <= transport_max; k++) {
         rng_vertex(rng, k);
         let counts = k >= transport_min;
-        if (counts) { radiance += throughput * next_event(s, rng); }
+        if (counts) {
+            let event = next_event(s, rng);
+            if (event.weight > 0.0) { radiance += throughput * scatter(s, event.direction) * event.value * event.weight; }
+        }
         rng_vertex(rng, k + 128u);
         let u = rng_next4(rng);
         let drawn = scatter_sample(s, u.xyz);
         if (drawn.pdf <= 0.0 || max3(drawn.value) <= 0.0) { break; }
-        throughput *= drawn.value / drawn.pdf;
         let ray = ray_from(s, drawn.direction);
         rays_traced += 1u;
         let hit = closest(ray, s.when);
-        if (counts) { radiance += throughput * met(hit, ray, drawn.pdf, s); }
+        if (counts) {
+            let emission = met(hit, ray, drawn.pdf, s);
+            radiance += throughput * drawn.value * emission.value * emission.weight;
+        }
+        throughput *= drawn.value / drawn.pdf;
         if (hit.instance == NONE || k == transport_max) { break; }
+        if (k == first) {
+            if (onward <= 0.0) { break; }
+            throughput *= onward;
+        }
         if (k >= roulette_after) {
             let survive = min(max3(throughput), 0.95);
             if (u.w >= survive) { break; }

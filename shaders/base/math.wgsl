@@ -14,9 +14,11 @@ fn frame_of(n: vec3<f32>) -> mat3x3<f32> {
     return mat3x3<f32>(vec3<f32>(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3<f32>(b, s + n.y * n.y * a, -n.y), n);
 }
 
-/// Of linear Rec. 709.
+/// Weights of linear Rec. 709 in its luminance.
+const LUMINANCE = vec3<f32>(0.2126, 0.7152, 0.0722);
+
 fn luminance(c: vec3<f32>) -> f32 {
-    return dot(c, vec3<f32>(0.2126, 0.7152, 0.0722));
+    return dot(c, LUMINANCE);
 }
 
 fn max3(v: vec3<f32>) -> f32 {

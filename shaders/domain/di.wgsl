@@ -13,6 +13,9 @@ import package::slot::trace::{occluded};
 import package::surface::{Surface, scatter};
 import package::scene::ray::{leave};
 
+/// Drawn by no ray.
+const DRAWN_IS_SEEN = false;
+
 /// 12 bytes.
 struct Sample { light: u32, u: f32, v: f32 }
 
@@ -51,6 +54,6 @@ fn shift(s: Sample, src: Surface, dst: Surface) -> Shifted {
 }
 
 /// A point of a light needs no replay: its radiance is looked up anew whenever it is used.
-fn refresh(s: Sample) -> Sample {
-    return s;
+fn changed(s: Sample, tolerance: f32) -> bool {
+    return false;
 }

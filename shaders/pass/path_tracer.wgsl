@@ -39,7 +39,7 @@ override samples: u32 = 1u;
     for (var i = 0u; i < samples; i++) {
         var rng = rng_for(id.xy);
         rng.key.w += i;
-        radiance += walk(s, &rng);
+        radiance += walk(s, 1u, 1.0, &rng);
     }
     radiance /= f32(samples);
     if (transport_min == 0u) { radiance += shown(record, s.view, NOW); }

@@ -63,8 +63,11 @@ override more_taps: u32 = 9u;
 /// From this frame's film position to last frame's, pixels.
 /// @optional
 @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
+/// 1 where the pixel's history must go; `initial` finds out by validation.
+/// @optional
+@group(1) @binding(2) var<storage, read> stale: array<u32>;
 /// Joined.
-@group(1) @binding(2) var<storage, read_write> reservoir: array<Reservoir>;
+@group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
@@ -82,7 +85,7 @@ override more_taps: u32 = 9u;
     var count = 1u;
     var own = 0.0;
     let before = pixel_before(id.xy, motion[at], record, exact, limits, &rng);
-    if (before != NOWHERE) {
+    if (before != NOWHERE && stale[at] == 0u) {
         inputs[1] = input_of(before, BEFORE, params.cap);
         own = inputs[1].confidence;
         count = 2u;
@@ -97,7 +100,7 @@ override more_taps: u32 = 9u;
         }
         inputs[count] = input_of(other, NOW, HUGE);
         count += 1u;
-        if (!few) { continue; }
+        if (!few || stale[other] != 0u) { continue; }
         let other_before = pixel_before(pixel_of(other), motion[other], surface[other], exact, limits, &rng);
         if (other_before != NOWHERE) {
             inputs[count] = input_of(other_before, BEFORE, params.cap);

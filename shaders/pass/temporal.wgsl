@@ -40,8 +40,11 @@ override tries: u32 = 2u;
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels.
 @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
+/// 1 where the pixel's history must go; `initial` finds out by validation.
+/// @optional
+@group(1) @binding(2) var<storage, read> stale: array<u32>;
 /// Both joined.
-@group(1) @binding(2) var<storage, read_write> reservoir: array<Reservoir>;
+@group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
@@ -54,7 +57,7 @@ override tries: u32 = 2u;
     var rng = rng_for(id.xy);
     let limits = similarity(params.normal, params.depth);
     let before = pixel_before(id.xy, motion[at], record, Search(tries, params.search), limits, &rng);
-    if (before == NOWHERE) {
+    if (before == NOWHERE || stale[at] != 0u) {
         reservoir[at] = current[at];
         return;
     }

@@ -4,7 +4,7 @@
 
 import package::base::rng::{Rng, rng_next4};
 import package::restir::reservoir::{Reservoir, Selection, finish, update};
-import package::slot::domain::{draw, p_hat, visible};
+import package::slot::domain::{DRAWN_IS_SEEN, draw, p_hat, visible};
 import package::slot::visibility::{TEST_CANDIDATE, Weight};
 import package::surface::{Surface};
 
@@ -20,6 +20,6 @@ fn resample(at: Surface, candidates: u32, rng: ptr<function, Rng>) -> Reservoir 
     }
     s.confidence = 1.0;
     var r = finish(s);
-    if (TEST_CANDIDATE && r.weight.value > 0.0 && !visible(r.sample, at)) { r.weight = Weight(0.0); }
+    if (TEST_CANDIDATE && !DRAWN_IS_SEEN && r.weight.value > 0.0 && !visible(r.sample, at)) { r.weight = Weight(0.0); }
     return r;
 }

@@ -9,6 +9,9 @@ import package::base::rng::{Rng, pcg4d, rng_next4};
 import package::frame::frame::{frame};
 import package::surface::{Surface};
 
+/// Drawn by no ray.
+const DRAWN_IS_SEEN = false;
+
 struct Sample { x: f32 }
 struct Drawn { sample: Sample, weight: f32 }
 struct Shifted { sample: Sample, value: vec3<f32>, p_hat: f32, jacobian: f32 }
@@ -84,6 +87,6 @@ fn shift(s: Sample, src: Surface, dst: Surface) -> Shifted {
     return Shifted(y, value(y, dst), p_hat(y, dst), (1.0 + 2.0 * b.k * u) / (1.0 + 2.0 * a.k * u));
 }
 
-fn refresh(s: Sample) -> Sample {
-    return s;
+fn changed(s: Sample, tolerance: f32) -> bool {
+    return false;
 }
