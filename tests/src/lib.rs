@@ -1,5 +1,8 @@
 //! The test harness: an adapter shared by all tests of a binary, and rigs that run graphs with kernels written in a test.
 
+pub mod references;
+pub mod seeds;
+
 use aquifer_graph::{Document, Graph, NeedsAll, Shelf, Source};
 use aquifer_lab::{capture::Capture, film::Film};
 use aquifer_render::{Context, ContextOptions, Renderer, RendererOptions, SceneGlobals, View};

@@ -5,45 +5,18 @@
 //! frame fails the test, as not resolved. Scenes that would take minutes are compared in coarser bands; the fine ones are evidence
 //! (`docs/external_truth.md`).
 
-use aquifer_lab::{
-    film::Film,
-    stats::{BlockTest, Blocks, Verdict, blocks::Quantity, compare_blocks},
-};
+use aquifer_lab::stats::{BlockTest, Blocks, Verdict, blocks::Quantity, compare_blocks};
 use aquifer_scene::Scene;
-use aquifer_tests::{Parts, context, scene};
-use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+use aquifer_tests::{Parts, context, references::mitsuba, scene};
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
 
-const SIZE: [u32; 2] = [64, 36];
 const GRAPH: &str = "extends = 'path_tracer.toml'\noutput = 'accumulate.image'\n[pass.tonemap]\nremove = true";
 
 fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("external/references").join(name)
-}
-
-/// Mean and variance of the mean, from `R G B` and `SE.R SE.G SE.B`.
-fn reference(name: &str) -> Film {
-    let path = file(name);
-    let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes().from_file(&path);
-    let image = image.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let channel = |name: &str| -> Vec<f32> {
-        let list = &image.layer_data.channel_data.list;
-        let found = list.iter().find(|channel| channel.name.eq(name)).unwrap_or_else(|| panic!("no channel {name}"));
-        match &found.sample_data {
-            FlatSamples::F32(values) => values.clone(),
-            other => panic!("channel {name} holds {other:?}"),
-        }
-    };
-    let three = |names: [&str; 3]| -> Vec<[f32; 3]> {
-        let [r, g, b] = names.map(channel);
-        (0..r.len()).map(|i| [r[i], g[i], b[i]]).collect()
-    };
-    let error = three(["SE.R", "SE.G", "SE.B"]);
-    let variance = error.into_iter().map(|pixel| pixel.map(|error| error * error)).collect();
-    Film { variance: Some(variance), ..Film::new(SIZE, three(["R", "G", "B"])).expect("the reference has 64×36 pixels") }
 }
 
 /// Renders up to `most` frames of a built-in scene, and compares.
@@ -58,7 +31,7 @@ fn coarse() -> BlockTest {
 
 fn compare_scene(scene: &Arc<Scene>, name: &str, transport: &str, settings: &[&str], most: u32, test: &BlockTest) {
     let Some(context) = context() else { return };
-    let reference = Blocks::of_film(&reference(&format!("{name}-{}.exr", transport.replace(':', ""))), 8, Quantity::Channels);
+    let reference = Blocks::of_film(&mitsuba(&format!("{name}-{}.exr", transport.replace(':', ""))), 8, Quantity::Channels);
     let transport_setting = format!("transport={transport}");
     // Several paths a frame: fewer dispatches for the same samples.
     let settings = [&[transport_setting.as_str(), "path_tracer.samples=4"], settings].concat();

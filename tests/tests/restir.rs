@@ -1,9 +1,13 @@
-//! Resampling: combination rules against closed forms, planted bugs, and direct light against the path tracer.
+//! Resampling: combination rules against closed forms, planted bugs, and direct and indirect light against path tracing.
 
 #[path = "restir/combine.rs"]
 mod combine;
 #[path = "restir/direct.rs"]
 mod direct;
+#[path = "restir/full.rs"]
+mod full;
+#[path = "restir/indirect.rs"]
+mod indirect;
 #[path = "restir/own_rule.rs"]
 mod own_rule;
 #[path = "restir/partition.rs"]
@@ -12,6 +16,8 @@ mod partition;
 mod passes;
 #[path = "restir/planted.rs"]
 mod planted;
+#[path = "restir/reconnection.rs"]
+mod reconnection;
 #[path = "restir/toy.rs"]
 mod toy;
 #[path = "restir/wires.rs"]

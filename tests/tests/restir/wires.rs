@@ -22,9 +22,26 @@ fn graphs_are_labelled() {
         ("restir_di_unbiased", "slots.mis=contribution", false),
         ("restir_di_unbiased", "slots.visibility=at_shading", false),
         ("restir_di_unbiased", "spatial.slots.mis=constant", true),
+        ("restir_gi", "slots.mis=balance", true),
+        ("restir_gi_unbiased", "slots.domain=gi_path", false),
+        ("restir_gi_unbiased", "spatial.jacobian=inverted", true),
+        ("restir_gi_unbiased", "slots.visibility=at_shading", true),
+        ("restir_gi_unbiased", "initial.validate_every=6", true),
+        ("restir_full", "spatial.target_of=radiance", false),
     ] {
         let found = check(graph, setting).unwrap_or_else(|faults| panic!("{faults}"));
         assert_eq!(!found.bias().is_empty(), biased, "{graph} with {setting}: {:?}", found.bias());
+    }
+}
+
+/// A glossy scene is asked only of the domain that takes every point for diffuse.
+#[test]
+fn facts_of_scenes_bias() {
+    for (domain, facts) in [("gi", vec!["glossy", "moving_lights", "moving_objects"]), ("gi_path", vec!["moving_lights", "moving_objects"])]
+    {
+        let found = check("restir_gi_unbiased", &format!("slots.domain={domain}")).unwrap_or_else(|faults| panic!("{faults}"));
+        let given: std::collections::BTreeSet<_> = found.bias_elsewhere().into_iter().filter_map(|finding| finding.given).collect();
+        assert_eq!(given.into_iter().collect::<Vec<_>>(), facts, "{domain}");
     }
 }
 

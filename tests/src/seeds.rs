@@ -1,0 +1,78 @@
+//! One frame of a graph with history, over independent seeds: frames of one run share samples, so that no average over them is a test.
+
+use crate::Parts;
+use aquifer_lab::{
+    film::Film,
+    stats::{
+        BlockTest, Blocks, Verdict,
+        blocks::{BlockComparison, BlockMoments, Quantity},
+        compare_blocks,
+    },
+};
+use aquifer_render::{Context, View};
+use aquifer_scene::Scene;
+use std::{sync::Arc, time::Instant};
+
+/// Pixels on a side of a block.
+pub const SIDE: u32 = 8;
+
+/// A graph with a pass `shade`, as it is compared.
+#[derive(Clone)]
+pub struct Trial<'a> {
+    /// A finished scene.
+    pub scene: &'a Arc<Scene>,
+    /// Text of a graph.
+    pub graph: &'a str,
+    /// `--set` texts.
+    pub settings: &'a [&'a str],
+    /// Modules over the built-in ones: (path, text).
+    pub shaders: &'a [(&'a str, &'a str)],
+    /// Camera and time.
+    pub view: View,
+    /// The frame that is compared; those before are its history.
+    pub frame: u32,
+    /// Most seeds.
+    pub seeds: u64,
+}
+
+impl Trial<'_> {
+    /// Adds seeds until the comparison of the pass `shade` is resolved or has failed, or all are spent.
+    ///
+    /// # Panics
+    /// When anything is wrong.
+    pub fn compare(&self, context: &Context, reference: &Blocks, test: &BlockTest) -> BlockComparison {
+        let parts = Parts {
+            settings: self.settings,
+            shaders: self.shaders,
+            keep: &["shade.color"],
+            view: self.view.clone(),
+            ..Parts::new(self.scene, self.graph)
+        };
+        let mut renderer = parts.renderer(context);
+        let mut moments = BlockMoments::new(parts.size, SIDE, Quantity::Luminance);
+        let begin = Instant::now();
+        let mut count = 0;
+        while count < self.seeds {
+            renderer.reseed(count).unwrap_or_else(|error| panic!("{error}"));
+            (0..=self.frame).for_each(|_| renderer.frame().unwrap_or_else(|error| panic!("{error}")));
+            let words = renderer.read_f32("shade.color").unwrap_or_else(|error| panic!("{error}"));
+            let color = words.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+            moments.push(&Film::new(parts.size, color).expect("one colour a pixel")).expect("films of one size");
+            count += 1;
+            let looks = count % 32 == 0 && count < self.seeds;
+            if looks && compare_blocks(&moments.blocks(), reference, test).is_ok_and(|found| found.verdict != Verdict::NotResolved) {
+                break;
+            }
+        }
+        let found = compare_blocks(&moments.blocks(), reference, test).expect("grids of one size");
+        eprintln!("{:?}, {count} seeds in {:.1?}: {found}", self.settings, begin.elapsed());
+        found
+    }
+}
+
+/// The path tracer's image, 64×36, from `frames` frames of eight paths.
+pub fn path_traced(context: &Context, scene: &Arc<Scene>, transport: &str, frames: u32, view: View) -> Blocks {
+    let graph = format!("extends = 'path_tracer.toml'\ntransport = '{transport}'");
+    let parts = Parts { settings: &["path_tracer.samples=8"], seed: 1 << 40, view, ..Parts::new(scene, &graph) };
+    Blocks::of_film(&parts.film(context, frames), SIDE, Quantity::Luminance)
+}
