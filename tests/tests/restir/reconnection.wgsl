@@ -2,7 +2,7 @@
 //!
 //! All light comes from a disk whose radiance varies over it; q and r see all of it.
 
-import package::base::math::{PI, INV_PI, frame_of};
+import package::base::math::{PI};
 import package::base::rng::{rng_begin, rng_next4};
 import package::base::sampling::{sample_hemisphere};
 import package::cached::{PathEnd, keep};
@@ -16,6 +16,8 @@ struct Case { q: f32, r: f32, aside: f32, slope: f32 }
 const CASES = array<Case, 6>(Case(1.0, 0.4, 0.0, 0.0), Case(0.4, 1.0, 0.0, 0.0), Case(1.0, 3.0, 0.5, 0.0), Case(1.2, 0.6, 0.2, 0.6), Case(0.6, 1.2, 0.3, 0.6),
     Case(1.5, 3.0, 1.0, -0.9));
 const RADIUS = 0.3;
+/// Of each pair.
+const SAMPLES = 16u;
 
 /// Pairs: from q by reconnection, from r itself.
 /// @extent fixed 786432
@@ -49,10 +51,13 @@ fn found(s: Surface, direction: vec3<f32>, normal: vec3<f32>) -> PathEnd {
     let q = receiver(vec3<f32>(0.1, -0.05, -c.q));
     let r = receiver(vec3<f32>(c.aside, 0.1, -c.r));
     var rng = rng_begin(vec2<u32>(5u, 8u), id.xy, 0u, 0u);
-    let from_q = Sample(keep(found(q, sample_hemisphere(rng_next4(&rng).xy), normal)));
-    let from_r = Sample(keep(found(r, sample_hemisphere(rng_next4(&rng).xy), normal)));
-    let t = shift(from_q, q, r);
-    var carried = 0.0;
-    if (t.jacobian > 0.0) { carried = t.value.y * 2.0 * PI * t.jacobian; }
-    estimates[id.x] = vec2<f32>(carried, value(from_r, r).y * 2.0 * PI);
+    var sums = vec2<f32>(0.0);
+    for (var i = 0u; i < SAMPLES; i++) {
+        let from_q = Sample(keep(found(q, sample_hemisphere(rng_next4(&rng).xy), normal)));
+        let from_r = Sample(keep(found(r, sample_hemisphere(rng_next4(&rng).xy), normal)));
+        let t = shift(from_q, q, r);
+        if (t.jacobian > 0.0) { sums.x += t.value.y * t.jacobian; }
+        sums.y += value(from_r, r).y;
+    }
+    estimates[id.x] = sums * (2.0 * PI / f32(SAMPLES));
 }
