@@ -3,10 +3,12 @@
 #
 #     tools/evidence.sh external [--size 64x36|256x144] [--minutes N] [SCENE:TRANSPORT …]
 #     tools/evidence.sh held_out [SCENE …]
+#     tools/evidence.sh restir_gi [SCENE …]
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
 # Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
+# restir_gi: unbiased ReSTIR GI against the path tracer, each scene still and with a moving camera, by two rules; some 3·10⁸ rays a row.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -21,8 +23,11 @@ held_out)
     cargo build --quiet -p aquifer
     "${PYTHON:-python3}" tests/external/held_out.py target/debug/aquifer out/evidence/held_out "$@"
     ;;
+restir_gi)
+    cargo run --quiet -p aquifer-tests --example restir_gi_evidence -- docs/evidence/restir_gi.json "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
+    ;;
 *)
-    echo "evidence: no item \`$item\`; there are: external, held_out" >&2
+    echo "evidence: no item \`$item\`; there are: external, held_out, restir_gi" >&2
     exit 2
     ;;
 esac
