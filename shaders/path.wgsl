@@ -11,7 +11,7 @@ import package::scene::geometry::{NONE};
 import package::scene::ray::{Hit, Ray, leave};
 import package::slot::lights::{arrive, jacobian_of, light_count, light_of, light_point, shadow_ray};
 @if(environment) import package::scene::environment::{environment_jacobian, environment_radiance};
-import package::slot::proposal::{propose, proposal_pdf};
+import package::slot::proposal::{propose, weighting_pdf};
 import package::slot::trace::{closest, occluded};
 import package::surface::{Surface, emitted, ray_from, scatter, scatter_pdf, scatter_sample, surface_at};
 
@@ -53,7 +53,7 @@ fn next_event(s: Surface, rng: ptr<function, Rng>) -> Incident {
     rays_traced += 1u;
     if (occluded(shadow_ray(leave(s.position, s.geometric, arrival.direction, s.size), p), s.when)) { return none; }
     if (arrival.jacobian == 0.0) { return Incident(arrival.direction, arrival.value, c.weight); }
-    let by_light = proposal_pdf(c.light, s.position) / arrival.jacobian;
+    let by_light = weighting_pdf(c.light, s.position) / arrival.jacobian;
     let share = power_heuristic(by_light, scatter_pdf(s, arrival.direction));
     return Incident(arrival.direction, arrival.value / arrival.jacobian, c.weight * arrival.jacobian * share);
 }
@@ -76,7 +76,7 @@ fn met(hit: Hit, ray: Ray, pdf: f32, s: Surface) -> Incident {
     }
     if (light == NONE || max3(radiance) <= 0.0) { return Incident(ray.direction, vec3<f32>(0.0), 0.0); }
     var share = 1.0;
-    if (jacobian > 0.0) { share = power_heuristic(pdf, proposal_pdf(light, s.position) / jacobian); }
+    if (jacobian > 0.0) { share = power_heuristic(pdf, weighting_pdf(light, s.position) / jacobian); }
     return Incident(ray.direction, radiance, share / pdf);
 }
 

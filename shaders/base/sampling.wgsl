@@ -34,3 +34,10 @@ fn sample_triangle(u: vec2<f32>) -> vec2<f32> {
     let s = sqrt(u.x);
     return vec2<f32>(s * (1.0 - u.y), s * u.y);
 }
+
+/// The u of `sample_triangle`, from barycentrics.
+fn triangle_uv(barycentrics: vec2<f32>) -> vec2<f32> {
+    let s = barycentrics.x + barycentrics.y;
+    if (s <= 0.0) { return vec2<f32>(0.0); }
+    return vec2<f32>(s * s, barycentrics.y / s);
+}

@@ -3,15 +3,28 @@
 //! The measure is uv: targets carry dω/duv (for a triangle, area · cos / r²), so that a sample means the same point of the same light at every
 //! pixel and in every frame, also of lights that move or deform, and the shift's Jacobian is 1. Ids of lights are the same at every moment of a
 //! scene; a light that has gone out has value 0.
+//!
+//! Of a pixel's n candidates, n_b are met by rays drawn from the BSDF and n_l are drawn by slot `proposal`. With q the density by uv that the
+//! proposal is taken for and p_b that of the BSDF, the balance heuristic gives a candidate's share m = n_s p_s / (n_l q + n_b p_b), so that n m times
+//! its contribution weight is n / (n_l q + n_b p_b) for a BSDF ray, and for a proposed one q / (n_l q + n_b p_b) · n W: unbiased for any q > 0, also where
+//! the proposal's own density is not known. A light that no ray can meet has p_b = 0.
 //! @default
 
 import package::base::math::{luminance};
-import package::base::rng::{Rng, rng_bits};
-import package::slot::lights::{arrive, light_count, light_point, shadow_ray};
-import package::slot::proposal::{propose};
-import package::slot::trace::{occluded};
-import package::surface::{Surface, scatter};
+import package::base::rng::{Rng, rng_bits, rng_next4};
+import package::scene::geometry::{NONE};
 import package::scene::ray::{leave};
+import package::slot::lights::{arrive, light_count, light_of, light_point, shadow_ray, uv_of};
+import package::slot::proposal::{propose, weighting_pdf};
+import package::slot::trace::{closest, occluded};
+import package::surface::{Surface, ray_from, scatter, scatter_pdf, scatter_sample};
+
+/// Candidates of a pixel that rays drawn from the BSDF meet; the others, of which there is always one, are drawn by slot `proposal`.
+/// @range 0 64
+/// @unbiased 0
+/// @unless visibility in_target
+/// @why rays meet only what their own pixel sees, which targets without visibility do not know of
+override bsdf_rays: u32 = 0u;
 
 /// Drawn by no ray.
 const DRAWN_IS_SEEN = false;
@@ -25,10 +38,37 @@ struct Drawn { sample: Sample, weight: f32 }
 /// `jacobian` 0: the shift does not exist.
 struct Shifted { sample: Sample, value: vec3<f32>, p_hat: f32, jacobian: f32 }
 
-fn draw(at: Surface, index: u32, rng: ptr<function, Rng>) -> Drawn {
+/// Candidate `index` of `count`; its weight holds its share, so that all count alike.
+fn draw(at: Surface, index: u32, count: u32, rng: ptr<function, Rng>) -> Drawn {
     if (light_count() == 0u) { return Drawn(Sample(0u, 0.0, 0.0), 0.0); }
+    let rays = min(bsdf_rays, count - 1u);
+    if (index < rays) { return meet(at, rays, count, rng_next4(rng).xyz); }
     let c = propose(at.position, rng_bits(rng));
-    return Drawn(Sample(c.light, c.uv.x, c.uv.y), c.weight);
+    let s = Sample(c.light, c.uv.x, c.uv.y);
+    if (rays == 0u) { return Drawn(s, c.weight); }
+    let q = weighting_pdf(s.light, at.position);
+    return Drawn(s, c.weight * f32(count) * q / mixed_density(s, at, rays, count, q));
+}
+
+/// What a ray drawn from the BSDF meets.
+fn meet(at: Surface, rays: u32, count: u32, u: vec3<f32>) -> Drawn {
+    let nothing = Drawn(Sample(0u, 0.0, 0.0), 0.0);
+    let drawn = scatter_sample(at, u);
+    if (drawn.pdf <= 0.0) { return nothing; }
+    let hit = closest(ray_from(at, drawn.direction), at.when);
+    let light = light_of(hit);
+    if (light == NONE) { return nothing; }
+    let uv = uv_of(hit, drawn.direction);
+    let s = Sample(light, uv.x, uv.y);
+    let density = mixed_density(s, at, rays, count, weighting_pdf(light, at.position));
+    if (density <= 0.0) { return nothing; }
+    return Drawn(s, f32(count) / density);
+}
+
+/// n_l q + n_b p_b, by uv.
+fn mixed_density(s: Sample, at: Surface, rays: u32, count: u32, q: f32) -> f32 {
+    let arrival = arrive(light_point(s.light, vec2<f32>(s.u, s.v), at.when), at.position);
+    return f32(count - rays) * q + f32(rays) * scatter_pdf(at, arrival.direction) * arrival.jacobian;
 }
 
 /// f · L_e · cos · dω/duv, without visibility.

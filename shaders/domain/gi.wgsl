@@ -36,7 +36,7 @@ struct Drawn { sample: Sample, weight: f32 }
 /// `jacobian` 0: the shift does not exist.
 struct Shifted { sample: Sample, value: vec3<f32>, p_hat: f32, jacobian: f32 }
 
-fn draw(at: Surface, index: u32, rng: ptr<function, Rng>) -> Drawn {
+fn draw(at: Surface, index: u32, count: u32, rng: ptr<function, Rng>) -> Drawn {
     var none: Drawn;
     let bounce = first_bounce(at, rng);
     let seed = suffix_seed(at, rng);

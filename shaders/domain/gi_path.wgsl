@@ -48,7 +48,7 @@ struct Shifted { sample: Sample, value: vec3<f32>, p_hat: f32, jacobian: f32 }
 /// A branch under choice: by f · cos₃ · L at x_s, which any positive number may stand for.
 struct Choice { sample: Sample, sum: f32, chosen: f32 }
 
-fn draw(at: Surface, index: u32, rng: ptr<function, Rng>) -> Drawn {
+fn draw(at: Surface, index: u32, count: u32, rng: ptr<function, Rng>) -> Drawn {
     var none: Drawn;
     let bounce = first_bounce(at, rng);
     let seed = suffix_seed(at, rng);

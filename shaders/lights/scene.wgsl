@@ -6,12 +6,12 @@
 //! @default
 
 import package::base::math::{HUGE, PI, luminance, max3};
-import package::base::sampling::{sample_triangle};
+import package::base::sampling::{sample_triangle, triangle_uv};
 import package::frame::frame::{NOW, frame};
-import package::scene::geometry::{NONE, instance_at, point_to_world, triangle_at, triangle_infos};
+import package::scene::geometry::{NONE, instance_at, is_solid, point_to_world, triangle_at, triangle_infos};
 import package::scene::material::{DOUBLE_SIDED, emission_at, materials};
 import package::scene::ray::{Hit, Ray, RELATIVE_ERROR};
-@if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance};
+@if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance, environment_uv};
 @if(punctual_lights) import package::scene::punctual::{Punctual, punctual_at, punctual_falloff};
 
 struct Light {
@@ -39,8 +39,10 @@ struct LightPoint {
     infinite: bool,
     /// Unit normal of the emitting side; 0 where the light has none.
     normal: vec3<f32>,
-    /// World area of a triangle; of the environment dω/duv; 0 for punctual lights.
+    /// World area of a triangle, 0 where its instance is squashed flat; of the environment dω/duv; 0 for punctual lights.
     area: f32,
+    /// Only light sampling meets it: a punctual light.
+    delta: bool,
     /// Radiance of triangle or environment, intensity of point and spot, irradiance of a directional light.
     emission: vec3<f32>,
     double_sided: bool,
@@ -72,6 +74,7 @@ fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
     @if(punctual_lights) {
         if (light.kind == PUNCTUAL) {
             let l = punctual_at(light.index, when);
+            p.delta = true;
             p.infinite = l.kind == 0u;
             p.position = select(l.position, -l.direction, p.infinite);
             p.emission = l.intensity;
@@ -101,7 +104,8 @@ fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> 
     var p: LightPoint;
     p.position = a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
     p.normal = normalize(n);
-    p.area = 0.5 * length(n);
+    // One that was squashed is in no hierarchy and shines nowhere, but may still be remembered.
+    p.area = select(0.0, 0.5 * length(n), is_solid(instance));
     p.emission = emission_at(material, light.triangle, barycentrics);
     p.double_sided = (materials[material].flags & DOUBLE_SIDED) != 0u;
     p.size = max(max3(abs(a)), max(max3(abs(b)), max3(abs(c))));
@@ -112,14 +116,14 @@ fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> 
 
 fn arrive(p: LightPoint, from_position: vec3<f32>) -> Arrival {
     if (p.infinite) {
-        let jacobian = p.area;
-        return Arrival(p.position, p.emission * select(1.0, jacobian, jacobian > 0.0), jacobian);
+        return Arrival(p.position, p.emission * select(p.area, 1.0, p.delta), p.area);
     }
     let d = p.position - from_position;
     let d2 = dot(d, d);
     if (d2 <= 0.0) { return Arrival(vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(0.0), 0.0); }
     let direction = d * inverseSqrt(d2);
-    if (p.area == 0.0) { return Arrival(direction, p.emission * (falloff(p, direction, d2) / d2), 0.0); }
+    if (p.delta) { return Arrival(direction, p.emission * (falloff(p, direction, d2) / d2), 0.0); }
+    if (p.area == 0.0) { return Arrival(direction, vec3<f32>(0.0), 0.0); }
     let cosine = -dot(p.normal, direction);
     let facing = select(max(cosine, 0.0), abs(cosine), p.double_sided);
     let jacobian = facing * p.area / d2;
@@ -142,8 +146,12 @@ fn shadow_ray(origin: vec3<f32>, p: LightPoint) -> Ray {
     return Ray(origin, distance, d / distance);
 }
 
-/// Which light a hit belongs to, or `NONE`.
+/// Which light a ray's end belongs to, or `NONE`: a ray that hits nothing ends at the environment, the last of the lights.
 fn light_of(hit: Hit) -> u32 {
+    if (hit.instance == NONE) {
+        @if(environment) { return light_count() - 1u; }
+        return NONE;
+    }
     @if(emissive_meshes) {
         let rank = triangle_infos[hit.triangle].emissive;
         if (rank != NONE) { return instance_at(hit.instance, NOW).first_light + rank; }
@@ -154,4 +162,12 @@ fn light_of(hit: Hit) -> u32 {
 /// dω/duv of light `id` at a hit of a ray along unit `direction` that began at `origin`.
 fn jacobian_of(id: u32, hit: Hit, origin: vec3<f32>, when: u32) -> f32 {
     return arrive(triangle_point(lights[id], id, hit.barycentrics, when), origin).jacobian;
+}
+
+/// The uv that `light_point` has a hit at; of a ray that hit nothing, that of its direction.
+fn uv_of(hit: Hit, direction: vec3<f32>) -> vec2<f32> {
+    @if(environment) {
+        if (hit.instance == NONE) { return environment_uv(direction); }
+    }
+    return triangle_uv(hit.barycentrics);
 }

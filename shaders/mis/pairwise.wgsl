@@ -1,4 +1,4 @@
-//! Fills slot `mis`: pairwise MIS, defensive (Bitterli 2022, § 9.1.3; Lin et al. 2022): every input is weighted against
+//! Fills slot `mis`: pairwise MIS, defensive (Bitterli 2022; Lin et al. 2022): every input is weighted against
 //! the canonical κ alone. With C = Σc and p̂ the receiver's target,
 //!
 //!   m_i(y) = (c_i / C) (C − c_κ) p̂_{←i}(y) / [(C − c_κ) p̂_{←i}(y) + c_κ p̂(y)]

@@ -9,7 +9,7 @@ import package::frame::frame::{NOW, frame, index_of, inside};
 import package::frame::random::{rng_for};
 import package::restir::inputs::{history, surface};
 import package::restir::neighbour::{NOWHERE, similarity};
-import package::restir::reproject::{Search, pixel_before};
+import package::restir::reproject::{exactly, pixel_before};
 import package::restir::reservoir::{Reservoir};
 import package::restir::ris::{resample};
 import package::slot::domain::{changed, visible};
@@ -58,7 +58,7 @@ override validate_every: u32 = 0u;
         var rng = rng_for(id.xy);
         var before = NOWHERE;
         if (validate_every > 0u && frame.index % max(validate_every, 1u) == 0u) {
-            before = pixel_before(id.xy, motion[at], record, Search(0u, 0.0), similarity(params.normal, params.depth), &rng);
+            before = pixel_before(id.xy, motion[at], record, exactly(), similarity(params.normal, params.depth), &rng);
         }
         let s = unpack_surface(record, NOW);
         if (before != NOWHERE && history[before].weight.value > 0.0) {

@@ -12,7 +12,7 @@ import package::frame::frame::{BEFORE, NOW, frame, index_of, inside, pixel_of};
 import package::frame::random::{rng_for};
 import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
 import package::restir::neighbour::{NOWHERE, neighbour, similarity};
-import package::restir::reproject::{Search, pixel_before};
+import package::restir::reproject::{exactly, pixel_before};
 import package::restir::reservoir::{Reservoir};
 import package::slot::mis::{combine};
 import package::surface::{is_surface, unpack_surface};
@@ -59,6 +59,14 @@ override taps: u32 = 5u;
 /// @range 1 9
 override more_taps: u32 = 9u;
 
+/// How the places of pixels follow each other: at random, or evenly from a random start (R2 sequence, Roberts 2018).
+/// @choices random even
+override pattern: u32 = 0u;
+
+const EVEN: u32 = 1u;
+/// 1 / g and 1 / g², g³ = g + 1.
+const R2 = vec2<f32>(0.7548776662, 0.5698402910);
+
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels.
 /// @optional
@@ -79,7 +87,7 @@ override more_taps: u32 = 9u;
     }
     var rng = rng_for(id.xy);
     let limits = similarity(params.normal, params.depth);
-    let exact = Search(0u, 0.0);
+    let exact = exactly();
     var inputs: array<Input, MAX_INPUTS>;
     inputs[0] = input_of(at, NOW, HUGE);
     var count = 1u;
@@ -92,8 +100,10 @@ override more_taps: u32 = 9u;
     }
     let few = own < params.low;
     var radius = params.radius * select(1.0, f32(frame.extent.y) / params.rows, params.rows > 0.0);
+    var place = vec2<f32>(0.0);
     for (var i = 0u; i < select(taps, more_taps, few); i++) {
-        let other = neighbour(id.xy, record, radius, limits, rng_next4(&rng).xy);
+        place = select(rng_next4(&rng).xy, fract(place + R2), pattern == EVEN && i > 0u);
+        let other = neighbour(id.xy, record, radius, limits, place);
         if (other == NOWHERE) {
             radius = max(radius * params.shrink, min(radius, params.least));
             continue;

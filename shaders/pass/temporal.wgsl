@@ -37,6 +37,9 @@ struct Params {
 /// @range 0 16
 override tries: u32 = 2u;
 
+/// Takes the history of another pixel nearby, another one every frame: what pixels share by reuse does not stay together.
+override permute: bool = false;
+
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels.
 @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
@@ -56,7 +59,7 @@ override tries: u32 = 2u;
     }
     var rng = rng_for(id.xy);
     let limits = similarity(params.normal, params.depth);
-    let before = pixel_before(id.xy, motion[at], record, Search(tries, params.search), limits, &rng);
+    let before = pixel_before(id.xy, motion[at], record, Search(tries, params.search, permute), limits, &rng);
     if (before == NOWHERE || stale[at] != 0u) {
         reservoir[at] = current[at];
         return;

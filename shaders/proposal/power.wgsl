@@ -4,7 +4,7 @@
 import package::base::rng::{below};
 import package::slot::lights::{light_count, lights};
 
-/// A light, a place in its uv, and the weight 1 / P.
+/// A light, a place in its uv, and its contribution weight: here 1 / P.
 struct Candidate { light: u32, uv: vec2<f32>, weight: f32 }
 
 /// Vose's alias method: one entry, one comparison. The entry, the coin and uv use bits of their own.
@@ -15,7 +15,7 @@ fn propose(receiver: vec3<f32>, bits: vec4<u32>) -> Candidate {
     return Candidate(id, vec2<f32>(bits.zw >> vec2<u32>(8u)) * 5.9604644775390625e-8, 1.0 / lights[id].pmf);
 }
 
-/// P(light), with uv uniform: the density by uv.
-fn proposal_pdf(light: u32, receiver: vec3<f32>) -> f32 {
+/// Density by uv that MIS weights take this proposal for. Here it is the true one: P(light), with uv uniform.
+fn weighting_pdf(light: u32, receiver: vec3<f32>) -> f32 {
     return lights[light].pmf;
 }

@@ -23,6 +23,12 @@ struct Input {
     confidence: f32,
 }
 
+/// Whose transforms, lights and hierarchy last frame's targets are evaluated with: last frame's, or today's. Camera and surfaces are last frame's.
+/// @choices before now
+/// @unbiased before
+/// @why where things move, last frame's samples are not weighted by the targets that they were made with
+override history_world: u32 = 0u;
+
 /// Surfaces of this frame.
 @group(1) @binding(10) var<storage, read> surface: array<SurfaceRecord>;
 /// Reservoirs of this frame.
@@ -45,7 +51,9 @@ fn reservoir_at(pixel: u32, when: u32) -> Reservoir {
 
 fn surface_at_pixel(pixel: u32, when: u32) -> Surface {
     if (when == NOW) { return unpack_surface(surface[pixel], when); }
-    return unpack_surface(previous_surface[pixel], when);
+    var s = unpack_surface(previous_surface[pixel], when);
+    if (history_world == 1u) { s.when = NOW; }
+    return s;
 }
 
 fn surface_of_input(i: Input) -> Surface {

@@ -13,7 +13,7 @@ fn resample(at: Surface, candidates: u32, rng: ptr<function, Rng>) -> Reservoir 
     var s: Selection;
     let m = 1.0 / f32(candidates);
     for (var i = 0u; i < candidates; i++) {
-        let drawn = draw(at, i, rng);
+        let drawn = draw(at, i, candidates, rng);
         var target_value = 0.0;
         if (drawn.weight > 0.0) { target_value = p_hat(drawn.sample, at); }
         update(&s, drawn.sample, target_value, m * target_value * drawn.weight, rng_next4(rng).x);

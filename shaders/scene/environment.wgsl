@@ -83,6 +83,21 @@ fn environment_direction(u: vec2<f32>) -> vec3<f32> {
     return from_map(phi, y);
 }
 
+/// The uv that `environment_direction` has `direction` at.
+fn environment_uv(direction: vec3<f32>) -> vec2<f32> {
+    let width = environment_info.width;
+    let height = environment_info.height;
+    let place = to_map(direction) * vec2<f32>(f32(width), f32(height));
+    let column = min(u32(max(place.x, 0.0)), width - 1u);
+    let row = min(u32(max(place.y, 0.0)), height - 1u);
+    let top = cos(PI * f32(row) / f32(height));
+    let down = (top - dot(environment_info.to_map_y, direction)) / (top - cos(PI * f32(row + 1u) / f32(height)));
+    let within = clamp(vec2<f32>(place.x - f32(column), down), vec2<f32>(0.0), vec2<f32>(1.0));
+    let row_bounds = bounds(0u, row);
+    let column_bounds = bounds(height + row * width, column);
+    return vec2<f32>(mix(column_bounds.x, column_bounds.y, within.x), mix(row_bounds.x, row_bounds.y, within.y));
+}
+
 /// dω/duv: the texel's solid angle over its probability. 0 where the density is 0.
 fn environment_jacobian(direction: vec3<f32>) -> f32 {
     let width = environment_info.width;

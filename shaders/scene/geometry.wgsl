@@ -61,6 +61,11 @@ fn instance_in(table: texture_2d<u32>, id: u32) -> Instance {
     );
 }
 
+/// False where the map to the world squashes the mesh flat: nothing can hit it. The host then leaves the inverse zeros.
+fn is_solid(i: Instance) -> bool {
+    return any(i.to_object_x.xyz != vec3<f32>(0.0));
+}
+
 fn point_to_world(i: Instance, p: vec3<f32>) -> vec3<f32> {
     let q = vec4<f32>(p, 1.0);
     return vec3<f32>(dot(i.to_world_x, q), dot(i.to_world_y, q), dot(i.to_world_z, q));

@@ -9,9 +9,9 @@ use aquifer_lab::{
         compare_blocks,
     },
 };
-use aquifer_render::{Context, View};
+use aquifer_render::{Context, Renderer, View};
 use aquifer_scene::Scene;
-use std::{sync::Arc, time::Instant};
+use std::{ops::Range, sync::Arc, time::Instant};
 
 /// Pixels on a side of a block.
 pub const SIDE: u32 = 8;
@@ -53,11 +53,7 @@ impl Trial<'_> {
         let begin = Instant::now();
         let mut count = 0;
         while count < self.seeds {
-            renderer.reseed(count).unwrap_or_else(|error| panic!("{error}"));
-            (0..=self.frame).for_each(|_| renderer.frame().unwrap_or_else(|error| panic!("{error}")));
-            let words = renderer.read_f32("shade.color").unwrap_or_else(|error| panic!("{error}"));
-            let color = words.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-            moments.push(&Film::new(parts.size, color).expect("one colour a pixel")).expect("films of one size");
+            add_seeds(&mut renderer, self.frame, count..count + 1, &mut moments);
             count += 1;
             let looks = count % 32 == 0 && count < self.seeds;
             if looks && compare_blocks(&moments.blocks(), reference, test).is_ok_and(|found| found.verdict != Verdict::NotResolved) {
@@ -70,9 +66,28 @@ impl Trial<'_> {
     }
 }
 
-/// The path tracer's image, 64×36, from `frames` frames of eight paths.
+/// Adds what frame `frame` of the pass `shade` shows for each of these seeds.
+///
+/// # Panics
+/// When the device fails, or the sizes differ.
+pub fn add_seeds(renderer: &mut Renderer, frame: u32, seeds: Range<u64>, moments: &mut BlockMoments) {
+    for seed in seeds {
+        renderer.reseed(seed).unwrap_or_else(|error| panic!("{error}"));
+        (0..=frame).for_each(|_| renderer.frame().unwrap_or_else(|error| panic!("{error}")));
+        let words = renderer.read_f32("shade.color").unwrap_or_else(|error| panic!("{error}"));
+        let color = words.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        moments.push(&Film::new(renderer.options().size, color).expect("one colour a pixel")).expect("films of one size");
+    }
+}
+
+/// Block means of [`path_traced_film`].
 pub fn path_traced(context: &Context, scene: &Arc<Scene>, transport: &str, frames: u32, view: View) -> Blocks {
+    Blocks::of_film(&path_traced_film(context, scene, transport, frames, view), SIDE, Quantity::Luminance)
+}
+
+/// The path tracer's image, 64×36, from `frames` frames of eight paths.
+pub fn path_traced_film(context: &Context, scene: &Arc<Scene>, transport: &str, frames: u32, view: View) -> Film {
     let graph = format!("extends = 'path_tracer.toml'\ntransport = '{transport}'");
     let parts = Parts { settings: &["path_tracer.samples=8"], seed: 1 << 40, view, ..Parts::new(scene, &graph) };
-    Blocks::of_film(&parts.film(context, frames), SIDE, Quantity::Luminance)
+    parts.film(context, frames)
 }

@@ -67,6 +67,9 @@ impl Graph {
 
 /// The part biases with the values that the node has.
 fn applies(node: &Node, bias: &Bias) -> bool {
+    if bias.unless_slot.as_ref().is_some_and(|(slot, filling)| node.slots.get(slot) == Some(filling)) {
+        return false;
+    }
     let Some(name) = &bias.param else { return true };
     let Some(param) = node.contract.params.iter().find(|param| param.name == *name) else { return true };
     let unbiased = bias.unless.as_ref().and_then(|text| value_of(param, text));

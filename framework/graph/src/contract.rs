@@ -124,6 +124,8 @@ pub struct Bias {
     pub param: Option<String>,
     /// The value at which `param` does not bias, as it is written in a graph file.
     pub unless: Option<String>,
+    /// The slot's filling with which it does not bias.
+    pub unless_slot: Option<(String, String)>,
     /// Why.
     pub why: String,
     /// The fact that a scene must have for it; `None` where the scene has it, or where none is asked.

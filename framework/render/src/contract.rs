@@ -152,7 +152,8 @@ fn add_param(declared: Declared<'_>, contract: &mut Contract) -> Result<(), Stri
     let range = tag(tags, "range").map(|text| range(text).ok_or_else(|| wrong("range", text))).transpose()?;
     if let Some(value) = tag(tags, "unbiased") {
         let why = tag(tags, "why").unwrap_or(doc).to_owned();
-        contract.bias.push(Bias { slot, param: Some(name.to_owned()), unless: Some(value.to_owned()), why, given: None });
+        let unless_slot = tag(tags, "unless").map(|text| pair(text).ok_or_else(|| wrong("unless", text))).transpose()?;
+        contract.bias.push(Bias { slot, param: Some(name.to_owned()), unless: Some(value.to_owned()), unless_slot, why, given: None });
     }
     contract.params.push(Param { name: name.to_owned(), default, range, choices, live, doc: doc.to_owned() });
     Ok(())
@@ -186,6 +187,12 @@ fn from_number(number: f64, scalar: Scalar) -> Value {
         Scalar::U32 => Value::U32(number as u32),
         Scalar::F32 => Value::F32(number as f32),
     }
+}
+
+/// A slot and its filling.
+fn pair(text: &str) -> Option<(String, String)> {
+    let (slot, filling) = text.split_once(char::is_whitespace)?;
+    Some((slot.to_owned(), filling.trim().to_owned()))
 }
 
 fn range(text: &str) -> Option<(f64, f64)> {
@@ -251,7 +258,11 @@ mod tests {
         let mut params = layout("Params", 8);
         params.members = vec![
             member("exposure", "f32", &[("default", "1.5"), ("range", "-8 8")]),
-            member("curve", "u32", &[("choices", "linear aces"), ("default", "aces"), ("unbiased", "linear"), ("why", "it clips")]),
+            member(
+                "curve",
+                "u32",
+                &[("choices", "linear aces"), ("default", "aces"), ("unbiased", "linear"), ("unless", "film float"), ("why", "it clips")],
+            ),
             member("_pad", "vec2<f32>", &[]),
         ];
         let baked = |name: &str, default| Override {
@@ -272,7 +283,9 @@ mod tests {
         let found: Vec<_> = contract.params.iter().map(|param| (param.name.as_str(), param.default, param.live)).collect();
         assert_eq!(found, [("exposure", Value::F32(1.5), true), ("curve", Value::U32(1), true), ("taps", Value::U32(5), false)]);
         assert_eq!(contract.params[0].range, Some((-8.0, 8.0)));
-        let bias = Bias { slot: None, param: Some("curve".into()), unless: Some("linear".into()), why: "it clips".into(), given: None };
+        let unless_slot = Some(("film".into(), "float".into()));
+        let bias =
+            Bias { param: Some("curve".into()), unless: Some("linear".into()), unless_slot, why: "it clips".into(), ..Bias::default() };
         assert_eq!(contract.bias, [bias]);
     }
 

@@ -94,6 +94,37 @@ fn draw(bits: vec4<u32>) -> vec2<f32> {
 fn density(c: vec2<f32>) -> f32 { return FOUR_PI * bsdf_pdf(it(), view(), direction_of(c)); }
 ";
 
+/// What BSDF rays meet of half of Cornell's lamp, by its uv, from where nothing hides it: a ray for each point of the integral would be more rounds of
+/// loops than lavapipe runs.
+const BSDF_RAY: &str = "
+import package::bsdf::{Bsdf};
+import package::frame::frame::{NOW};
+import package::slot::lights::{arrive, light_of, light_point, uv_of};
+import package::slot::trace::{closest};
+import package::surface::{Surface, ray_from, scatter_pdf, scatter_sample};
+fn at() -> Surface {
+    var s: Surface;
+    s.position = vec3<f32>(0.0, 1.5, 0.4);
+    s.view = normalize(vec3<f32>(0.3, 1.0, 0.2));
+    s.normal = vec3<f32>(0.0, 1.0, 0.0);
+    s.geometric = s.normal;
+    s.size = 1.0;
+    s.bsdf = Bsdf(vec3<f32>(0.5), 0.0, vec3<f32>(0.04), 1.0, 0.3);
+    return s;
+}
+fn draw(bits: vec4<u32>) -> vec2<f32> {
+    let drawn = scatter_sample(at(), unit(bits).xyz);
+    if (drawn.pdf <= 0.0) { return vec2<f32>(-1.0); }
+    let hit = closest(ray_from(at(), drawn.direction), NOW);
+    if (light_of(hit) != 1u) { return vec2<f32>(-1.0); }
+    return uv_of(hit, drawn.direction);
+}
+fn density(c: vec2<f32>) -> f32 {
+    let arrival = arrive(light_point(1u, c, NOW), at().position);
+    return scatter_pdf(at(), arrival.direction) * arrival.jacobian;
+}
+";
+
 fn samplers() -> Vec<(String, String, &'static str)> {
     let warp = |name: &str, call: &str, pdf: &str, import: &str| {
         let text = format!(
@@ -132,6 +163,7 @@ fn samplers() -> Vec<(String, String, &'static str)> {
         let text = BSDF.replacen("fn it()", &format!("{define}fn it()"), 1);
         all.push((format!("bsdf metallic {metallic} alpha {alpha} cos {cos}"), text, "cornell"));
     }
+    all.push(("BSDF rays on a light".into(), BSDF_RAY.into(), "cornell"));
     all
 }
 
@@ -160,7 +192,7 @@ fn a_wrong_density_is_found() {
 fn proposals_follow_their_probabilities() {
     const KERNEL: &str = "
 import package::base::rng::{rng_begin, rng_bits};
-import package::slot::proposal::{propose, proposal_pdf};
+import package::slot::proposal::{propose, weighting_pdf};
 struct Drawn { light: u32, weight: f32, pdf: f32, u: f32, v: f32 }
 /// @extent fixed 1048576
 @group(1) @binding(0) var<storage, read_write> drawn: array<Drawn>;
@@ -168,7 +200,7 @@ struct Drawn { light: u32, weight: f32, pdf: f32, u: f32, v: f32 }
     if (id.x >= arrayLength(&drawn)) { return; }
     var rng = rng_begin(vec2<u32>(23u, 9u), id.xy, 0u, 0u);
     let c = propose(vec3<f32>(0.0), rng_bits(&rng));
-    drawn[id.x] = Drawn(c.light, c.weight, proposal_pdf(c.light, vec3<f32>(0.0)), c.uv.x, c.uv.y);
+    drawn[id.x] = Drawn(c.light, c.weight, weighting_pdf(c.light, vec3<f32>(0.0)), c.uv.x, c.uv.y);
 }
 ";
     let Some(context) = context() else { return };

@@ -7,7 +7,7 @@ import package::frame::frame::{BEFORE, NOW, frame, index_of, inside};
 import package::restir::reservoir::{Reservoir};
 import package::slot::domain::{Sample, p_hat, pixel, shift, surface_of, visible};
 import package::slot::visibility::{IN_TARGET, Weight};
-import package::surface::{Surface};
+import package::surface::{Surface, pack_surface, unpack_surface};
 
 @group(1) @binding(0) var<storage, read_write> reservoir: array<Reservoir>;
 /// 1 for an input that could have made y.
@@ -18,8 +18,8 @@ import package::surface::{Surface};
     let index = index_of(id.xy);
     let i = index % 9u;
     let u = (f32(index / 9u) + 0.5) / f32(arrayLength(&able) / 9u);
-    let at = surface_of(pixel(0u), NOW);
-    let s = surface_of(pixel(i), select(NOW, BEFORE, i % 3u == 2u));
+    let at = seen(0u, NOW);
+    let s = seen(i, select(NOW, BEFORE, i % 3u == 2u));
     let y = Sample(u + pixel(0u).k * u * u);
     var t = shift(y, at, s);
     if (i == 0u) {
@@ -30,4 +30,9 @@ import package::surface::{Surface};
     let can = t.jacobian > 0.0 && t.p_hat > 0.0 && (!IN_TARGET || visible(t.sample, s));
     reservoir[index] = Reservoir(t.sample, Weight(select(0.0, t.jacobian, can)), 1.0);
     able[index] = select(0.0, 1.0, can);
+}
+
+/// The surface of a pixel as a pass unpacks it, with its view.
+fn seen(i: u32, when: u32) -> Surface {
+    return unpack_surface(pack_surface(surface_of(pixel(i), when), 1.0), when);
 }

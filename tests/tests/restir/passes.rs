@@ -10,7 +10,9 @@ const SIZE: [u32; 2] = [9 * 24, 48];
 const FRAME: u32 = 3;
 const SEEDS: u64 = 48;
 
+/// The `balance` heuristic takes permuted histories and even taps.
 fn graph(mis: &str, visibility: &str) -> String {
+    let (permute, pattern) = if mis == "balance" { (true, "even") } else { (false, "random") };
     format!(
         "extends = 'restir_di.toml'
 slots = {{ domain = 'toy', mis = '{mis}', visibility = '{visibility}' }}
@@ -18,7 +20,10 @@ slots = {{ domain = 'toy', mis = '{mis}', visibility = '{visibility}' }}
 kind = 'toy_gbuffer'
 [pass.initial]
 set.candidates = 4
+[pass.temporal]
+set.permute = {permute}
 [pass.spatial]
+set.pattern = '{pattern}'
 set.radius = 5.0
 set.rows = 0.0
 set.taps = 4"

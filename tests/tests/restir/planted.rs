@@ -14,7 +14,7 @@ struct Bug {
     visibility: &'static str,
 }
 
-const BUGS: [Bug; 8] = [
+const BUGS: [Bug; 11] = [
     Bug {
         name: "inverted Jacobian",
         module: SHARED,
@@ -77,6 +77,30 @@ const BUGS: [Bug; 8] = [
         what: "        sum += (*inputs)[i].confidence * here / (there + here);",
         by: "        if (package::restir::inputs::reservoir_at((*inputs)[i].pixel, (*inputs)[i].when).weight.value <= 0.0) { continue; }\n        sum += (*inputs)[i].confidence * here / (there + here);",
         rule: "pairwise",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "last frame's target taken from today",
+        module: SHARED,
+        what: "unpack_surface(previous_surface[pixel], when)",
+        by: "unpack_surface(previous_surface[pixel], NOW)",
+        rule: "pairwise",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "previous frame's camera missing",
+        module: "surface",
+        what: "normalize(camera_at(when).position - r.position)",
+        by: "normalize(camera_at(0u).position - r.position)",
+        rule: "balance",
+        visibility: "at_shading",
+    },
+    Bug {
+        name: "an MIS denominator with the centre's view direction",
+        module: SHARED,
+        what: "let x = move_to(y, at, src);",
+        by: "var wrong = src; wrong.view = at.view; let x = move_to(y, at, wrong);",
+        rule: "balance",
         visibility: "at_shading",
     },
 ];

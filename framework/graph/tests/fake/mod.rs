@@ -216,5 +216,5 @@ fn ranged(name: &str, default: Value, least: f64, most: f64) -> Param {
 
 fn bias(slot: Option<&str>, param: Option<&str>, unless: Option<&str>, why: &str) -> Bias {
     let text = |text: Option<&str>| text.map(str::to_owned);
-    Bias { slot: text(slot), param: text(param), unless: text(unless), why: why.into(), given: None }
+    Bias { slot: text(slot), param: text(param), unless: text(unless), why: why.into(), ..Bias::default() }
 }

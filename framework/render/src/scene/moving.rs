@@ -17,7 +17,7 @@ pub struct State {
     view: View,
     camera: Camera,
     /// (name of this frame's array, name of last frame's, bytes).
-    arrays: [Array; 4],
+    arrays: [Array; 5],
     /// Lights that can be drawn.
     lights: u32,
     depth: u32,
@@ -54,6 +54,7 @@ impl State {
                 bytes: bytes(&punctuals(scene, &moment)),
             },
             Array { now: "lights/scene::lights", before: "", table: false, bytes: bytes(&lights) },
+            Array { now: "scene/bounds::bounds", before: "", table: false, bytes: bytes(&[bounds(&tlas)]) },
         ];
         let drawable = if list.table.is_empty() { 0 } else { list.lights.len() as u32 };
         Ok(State { time, view: view.clone(), camera: moment.camera, arrays, lights: drawable, depth: tlas.bvh.depth })
@@ -96,6 +97,10 @@ fn light_records(moment: &Moment, list: &LightList, still: &Still) -> Vec<mirror
         mirror::Light { kind, index, triangle, pmf: entry.pmf, threshold: entry.threshold, other: entry.alias }
     };
     list.lights.iter().enumerate().map(record).collect()
+}
+
+fn bounds(tlas: &Tlas) -> mirror::Bounds {
+    tlas.bounds().map(|found| mirror::Bounds { low: found.min.into(), high: found.max.into(), ..Default::default() }).unwrap_or_default()
 }
 
 /// The arrays on the device.

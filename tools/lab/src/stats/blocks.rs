@@ -10,9 +10,10 @@ pub use compare::{BlockComparison, BlockDifference, BlockTest, PlaneComparison, 
 
 use super::{Estimate, Moments, SizesDiffer, same_size};
 use crate::film::{Film, LUMINANCE, luminance};
+use serde::{Deserialize, Serialize};
 
 /// What is averaged over blocks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
     /// Luminance. From per-channel variances its standard error can only be bounded from above (by channels that vary together, which is
     /// nearly true of rendered noise); the bound is used, so that resolution is never overstated.
@@ -87,7 +88,7 @@ impl Blocks {
 }
 
 /// Block means over independent renders, one a seed: right whatever the renders share within themselves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct BlockMoments {
     grid: Grid,
     quantity: Quantity,
@@ -114,6 +115,11 @@ impl BlockMoments {
         Ok(())
     }
 
+    /// How many renders so far.
+    pub fn count(&self) -> u64 {
+        self.planes.first().map_or(0, |(overall, _)| overall.count())
+    }
+
     /// Means and standard errors so far.
     pub fn blocks(&self) -> Blocks {
         let plane = |((overall, blocks), &name): (&(Moments, Vec<Moments>), &&'static str)| Plane {
@@ -126,7 +132,7 @@ impl BlockMoments {
 }
 
 /// How an image is cut into blocks; those at the right and lower edge may be smaller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Grid {
     size: [u32; 2],
     side: u32,

@@ -1,7 +1,9 @@
 //! Mean and variance of a stream.
 
+use serde::{Deserialize, Serialize};
+
 /// Count, mean and variance, updated one value at a time (Welford 1962) or merged (Chan, Golub, LeVeque 1979).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Moments {
     count: u64,
     mean: f64,
