@@ -16,6 +16,10 @@ import package::surface::{Surface};
 /// @unbiased on
 /// @why without its true value samples count too much or too little at pixels nearer to or farther from what they hit
 override jacobian: u32 = 0u;
+/// Where J or 1 / J is larger the shift is taken not to exist; 0: nowhere. Being the same both ways it biases no rule that is unbiased without it.
+/// Weights 1/M need it: they do not know that an input could hardly have made a sample, and J is unbounded where a receiver is near to it.
+/// @range 0 1000000
+override jacobian_limit: f32 = 0.0;
 
 /// dω/dA at a point with unit `normal`, seen from `viewer`; 0 from behind.
 fn seen_by(viewer: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) -> f32 {
@@ -27,6 +31,7 @@ fn seen_by(viewer: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) -> f32 {
 /// J, from what q and r see of dA. Where the point has moved rigidly between two worlds, each sees it in its own.
 fn reconnection_jacobian(by_q: f32, by_r: f32) -> f32 {
     if (by_q <= 0.0 || by_r <= 0.0) { return 0.0; }
+    if (jacobian_limit > 0.0 && max(by_q / by_r, by_r / by_q) > jacobian_limit) { return 0.0; }
     switch jacobian {
         case 1u: { return 1.0; }
         case 2u: { return by_q / by_r; }
