@@ -1,7 +1,9 @@
 //! What can be typed.
 
 use crate::{
-    command::{adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, render, report, scenes, schema},
+    command::{
+        adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, regress, render, report, scenes, schema,
+    },
     failure::Failure,
     ui::Ui,
 };
@@ -57,6 +59,8 @@ pub enum Command {
     Adapters(adapters::Args),
     /// Combine renders of the same thing, made with other frames or seeds
     Merge(merge::Args),
+    /// Check that graphs still give the pictures that were kept
+    Regress(regress::Args),
     /// Measure how far one image is from another
     Diff(diff::Args),
     /// Measure speed: medians and ratios of contestants that take turns
@@ -85,6 +89,7 @@ impl Command {
             Self::Scenes(args) => scenes::run(args, ui),
             Self::Adapters(args) => adapters::run(args, ui),
             Self::Merge(args) => merge::run(args, ui),
+            Self::Regress(args) => regress::run(args, ui),
             Self::Diff(args) => diff::run(args, ui),
             Self::Bench(args) => bench::run(args, ui),
             Self::Report(args) => report::run(args, ui),

@@ -11,6 +11,7 @@ pub mod graphs;
 pub mod man;
 pub mod merge;
 pub mod passes;
+pub mod regress;
 pub mod render;
 pub mod report;
 pub mod scenes;

@@ -1,11 +1,15 @@
 //! The command line as a program: what it prints where, how it exits, what it leaves on disk.
 
+#[path = "cli/compare.rs"]
+mod compare;
 #[path = "cli/graphs.rs"]
 mod graphs;
 #[path = "cli/images.rs"]
 mod images;
 #[path = "cli/manners.rs"]
 mod manners;
+#[path = "cli/regress.rs"]
+mod regress;
 #[path = "cli/render.rs"]
 mod render;
 #[path = "cli/run.rs"]

@@ -13,6 +13,7 @@ pub mod film;
 pub mod metrics;
 pub mod page;
 pub mod rays;
+pub mod regress;
 pub mod stage;
 pub mod stats;
 pub mod watch;

@@ -1,9 +1,11 @@
 //! `aquifer compare A [B …] --scene S [S2 …]`
 
 mod entrants;
+mod jobs;
 mod words;
 
 use crate::{
+    cli::VERSION,
     failure::Failure,
     source::{SceneArgs, ShaderArgs, files, text_of},
     ui::Ui,
@@ -77,8 +79,13 @@ pub struct Args {
     /// Set a value of all graphs; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = value::setting)]
     settings: Vec<String>,
+    /// Every graph with each of these values; repeatable, for every combination
+    #[arg(long = "sweep", value_name = "KEY=VALUE,VALUE,…")]
+    sweeps: Vec<String>,
     #[command(flatten)]
     shaders: ShaderArgs,
+    #[command(flatten)]
+    jobs: jobs::JobArgs,
     /// What is measured
     #[arg(long, value_enum, default_value = "frame", help_heading = "Protocol")]
     protocol: ProtocolName,
@@ -124,36 +131,50 @@ pub struct Args {
 }
 
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
-    std::fs::create_dir_all(&args.output).map_err(|error| Failure::new(format!("cannot make `{}`: {error}", args.output.display())))?;
-    atomic::check_writable(&args.output.join("report.html"))?;
-    let entrants = entrants::entrants(&args.graphs, &args.settings, args.transport)?;
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
-    let mut watch = Watch::new(ui);
-    let mut report = Report { schema: SCHEMA, protocol: args.protocol(), ..Report::default() };
-    let mut clock = Clock::Wall;
-    for (index, name) in args.scenes.iter().enumerate() {
-        let (stage, facts) = args.stage(name, &context, ui)?;
-        if index == 0 {
-            report.graphs = entrants.iter().map(|entrant| graph_facts(entrant, &stage)).collect::<Result<_, Failure>>()?;
-            report.warnings.extend(args.refuse_unlike(&report.graphs)?);
-        }
-        let Compared { result, warnings, seconds, lab_seconds, clock: found } =
-            compare_scene(&stage, &entrants, &facts, &args.request()?, &mut watch)?;
-        report.scenes.push(result);
-        report.warnings.extend(warnings);
-        report.made.measured_seconds += seconds;
-        report.made.lab_seconds += lab_seconds;
-        clock = found;
-    }
-    report.warnings.extend(watch.finish());
-    report.made = Made { clock: words::clock(clock).to_owned(), ..made(&context, report.made) };
+    jobs::make_folder(&args)?;
+    let entrants = entrants::swept(entrants::entrants(&args.graphs, &args.settings, args.transport)?, &args.sweeps)?;
+    let report = match args.jobs.is_whole() {
+        true => Some(args.compare(&entrants, &args.scenes, ui)?),
+        false => args.jobs.run(&args, &entrants, ui)?,
+    };
+    let Some(report) = report else { return Ok(()) };
     page::write(&report, &args.output)?;
     report.warnings.iter().for_each(|warning| ui.warn(warning));
     ui.note(&format!("wrote {}", args.output.join("report.html").display()));
     if args.json { ui.json(&report) } else { ui.print(&words::report(&report)) }
 }
 
+fn write_json(path: &Path, report: &Report) -> Result<(), Failure> {
+    let text = serde_json::to_vec_pretty(report).map_err(|error| Failure::Failed(error.into()))?;
+    Ok(atomic::write(path, &text)?)
+}
+
 impl Args {
+    /// Measures these graphs on these scenes.
+    fn compare(&self, entrants: &[Entrant], scenes: &[String], ui: &Ui) -> Result<Report, Failure> {
+        let context = Context::new(&ContextOptions { adapter: self.adapter.clone(), ..ContextOptions::default() })?;
+        let mut watch = Watch::new(ui);
+        let mut report = Report { schema: SCHEMA, protocol: self.protocol(), ..Report::default() };
+        let mut clock = Clock::Wall;
+        for (index, name) in scenes.iter().enumerate() {
+            let (stage, facts) = self.stage(name, &context, ui)?;
+            if index == 0 {
+                report.graphs = entrants.iter().map(|entrant| graph_facts(entrant, &stage)).collect::<Result<_, Failure>>()?;
+                report.warnings.extend(self.refuse_unlike(&report.graphs)?);
+            }
+            let Compared { result, warnings, seconds, lab_seconds, clock: found } =
+                compare_scene(&stage, entrants, &facts, &self.request()?, &mut watch)?;
+            report.scenes.push(result);
+            report.warnings.extend(warnings);
+            report.made.measured_seconds += seconds;
+            report.made.lab_seconds += lab_seconds;
+            clock = found;
+        }
+        report.warnings.extend(watch.finish());
+        report.made = Made { clock: words::clock(clock).to_owned(), ..made(&context, report.made) };
+        Ok(report)
+    }
+
     fn protocol(&self) -> Protocol {
         let (warm_up, frames, seeds, centred) = (self.warm_up, self.frames, self.seeds, self.film == FilmChoice::Centred);
         match self.protocol {
@@ -235,7 +256,7 @@ fn graph_facts(entrant: &Entrant, stage: &Stage) -> Result<GraphFacts, Failure> 
 fn made(context: &Context, spent: Made) -> Made {
     let adapter = context.adapter();
     Made {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
+        version: VERSION.to_owned(),
         unix_time: SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()),
         command: std::env::args().collect(),
         adapter: adapter.name.clone(),

@@ -2,14 +2,17 @@
 
 use super::{
     bench::{Bench, Entrant},
+    bias::{bias, t_values},
+    correlation::{accumulation_gain, correlation},
     error::CompareError,
     evaluate::{Rounds, Truth, cell_name},
     further, judge,
     observer::Observer,
     reference::{Content, Reference, Tracer, shaders},
-    report::{Cell, Protocol, ReferenceFacts, SceneResult},
+    report::{BiasFigures, Cell, Correlation, Protocol, ReferenceFacts, SceneResult},
     store::{Round, Store, make_folder},
     subject::Stage,
+    summary::median,
 };
 use crate::{
     film::Film,
@@ -39,6 +42,8 @@ pub struct Request {
     pub folder: PathBuf,
 }
 
+/// Frames that temporal correlation looks back.
+const LAGS: usize = 8;
 /// Folder of images beside the report.
 const IMAGES: &str = "images";
 
@@ -172,7 +177,7 @@ impl Scene<'_> {
             }
         }
         result.cells = cells.into_iter().flatten().collect();
-        self.write_images(&mut result.cells)?;
+        self.write_images(&mut result.cells, &result.references)?;
         let names: Vec<String> = self.entrants.iter().map(|entrant| entrant.name.clone()).collect();
         result.pairs = judge::pairs(&result.cells, &names);
         self.warn_of(&result);
@@ -252,8 +257,8 @@ impl Scene<'_> {
         format!("{IMAGES}/{}/{name}", self.facts.name)
     }
 
-    /// The first seed's film of every cell, and the mean over seeds.
-    fn write_images(&self, cells: &mut [Cell]) -> Result<(), CompareError> {
+    /// The first seed's film of every cell, the mean over seeds, and what all seeds say of bias and correlation.
+    fn write_images(&self, cells: &mut [Cell], references: &[ReferenceFacts]) -> Result<(), CompareError> {
         for (index, cell) in cells.iter_mut().enumerate() {
             let films = self.measured.films(index, cell, self.measured.takes(index) - 1)?;
             let name = file_name(&cell_name(cell, self.entrants));
@@ -265,8 +270,34 @@ impl Scene<'_> {
             films[0].write(&self.images().join(&one))?;
             mean.film().write(&self.images().join(&all))?;
             (cell.image, cell.mean_image) = (Some(self.image_name(&one)), Some(self.image_name(&all)));
+            let reference = Film::read(&self.request.folder.join(&references[cell.reference].image))?;
+            if films.len() < 2 {
+                continue;
+            }
+            let t_map = format!("{name}.t.exr");
+            t_values(&mean.film(), &reference).write(&self.images().join(&t_map))?;
+            cell.bias = Some(BiasFigures { t_map: Some(self.image_name(&t_map)), ..bias(&films, &reference)? });
+            cell.correlation = Some(self.correlation(index, cell, films)?);
         }
         Ok(())
+    }
+
+    /// From the last takes of a trace, from all of a growing budget, or from the one frame there is.
+    fn correlation(&self, index: usize, cell: &Cell, last: Vec<Film>) -> Result<Correlation, CompareError> {
+        let takes = self.measured.takes(index);
+        let films = |take: usize| self.measured.films(index, cell, take);
+        match self.request.protocol {
+            Protocol::Frame { .. } => Ok(correlation(&[last])),
+            Protocol::Trace { .. } => {
+                let frames = (takes.saturating_sub(LAGS + 1)..takes).map(films).collect::<Result<Vec<_>, _>>()?;
+                Ok(correlation(&frames))
+            }
+            Protocol::Accumulate { .. } => {
+                let mean = |take: usize| Ok((cell.curve[take].frame, films(take)?));
+                let means = (0..takes).map(mean).collect::<Result<Vec<_>, CompareError>>()?;
+                Ok(Correlation { accumulation_gain: accumulation_gain(&means), ..correlation(&[last]) })
+            }
+        }
     }
 
     /// What a reader of the figures must know.
@@ -352,10 +383,7 @@ impl Scene<'_> {
         let mut least = f64::INFINITY;
         for &(cell, take) in at {
             let errors = self.measured.errors(cell, take, film)?;
-            least = errors
-                .iter()
-                .map(|seeds| super::summary::median(&seeds.iter().map(|error| error.mse).collect::<Vec<_>>()))
-                .fold(least, f64::min);
+            least = errors.iter().map(|seeds| median(&seeds.iter().map(|error| error.mse).collect::<Vec<_>>())).fold(least, f64::min);
         }
         // An error that the reference's noise hides wholly has no share: it is more than all.
         let share = (variance > 0.0).then(|| if least > 0.0 { variance / least } else { f64::MAX });
