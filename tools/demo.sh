@@ -1,17 +1,16 @@
 #!/bin/sh
-# Sets up what is missing, builds, renders a built-in scene, and says where the picture and the numbers are.
+# Sets up what is missing, builds, compares two graphs at equal time, and says where the report is.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
 
 cargo build --quiet -p aquifer
-mkdir -p out
-target/debug/aquifer render path_tracer --scene cornell --size 256x144 --frames 64 --time 90 \
-    -o out/cornell.exr -o out/cornell.png --json >out/cornell.json
+target/debug/aquifer compare light_sampling restir_di_unbiased --scene many_lights --size 96x54 --warm-up 16 --seeds 8 \
+    --reference-samples 2048 --cache out/cache -o out/demo
 
 cat <<'END'
 
-The picture:  out/cornell.png
-As radiance:  out/cornell.exr   (mean, variance of the mean, and what made it)
-The numbers:  out/cornell.json  (samples, seconds, adapter, time of each pass)
+The report:   out/demo/report.html   (opens from disk: verdict, plots, images)
+The numbers:  out/demo/report.json and results.csv
+The films:    out/demo/images        (EXR: radiance; the means hold their variance)
 END

@@ -14,11 +14,11 @@ fn pictures_are_those_that_were_kept() {
 }
 
 #[test]
-fn another_rule_is_another_picture() {
-    // One thing is wrong with this graph of the old name: a rule that darkens shadow edges.
+fn a_biased_graph_is_another_picture() {
+    // Of the unbiased graph only the name is left: constant weights and reused visibility darken shadow edges.
     let mine = tempfile::tempdir().unwrap();
     let graph = mine.path().join("restir_di_unbiased.toml");
-    std::fs::write(&graph, "extends = 'restir_di_unbiased.toml'\nslots.mis = 'constant'\n").unwrap();
+    std::fs::write(&graph, "extends = 'restir_di.toml'\n").unwrap();
     let (graph, out) = (graph.to_str().unwrap(), mine.path().join("out"));
     let run = aquifer(&["regress", graph, "--golden", GOLDEN, "-o", out.to_str().unwrap()]);
     assert_eq!(run.code, 1, "{}{}", run.out, run.err);
