@@ -107,6 +107,9 @@ fn parts_and_limits() {
     aquifer(&["diff", &image, &reference, "--limit", "flip=1"]).fails(2, "there is no metric `flip`");
 }
 
+/// What a colour of the picture must be.
+type IsRight = fn([f32; 3]) -> bool;
+
 #[test]
 fn differences_become_pictures() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -114,7 +117,7 @@ fn differences_become_pictures() {
     let image = write(folder.path(), "image.exr", &film(2.0, 0, 32));
     let black = write(folder.path(), "black.exr", &film(0.0, 0, 32));
     let out = folder.path().join("heat.png").to_string_lossy().into_owned();
-    let cases: [(&str, fn([f32; 3]) -> bool); 3] =
+    let cases: [(&str, IsRight); 3] =
         [("difference", |c| c[0] > 2.0 * c[2]), ("flip-hdr", |c| c[0] > c[1]), ("flip-ldr", |c| c.iter().all(|&c| c < 0.01))];
     for (what, is_right) in cases {
         aquifer(&["diff", &image, &reference, "--heat", &out, "--heat-of", what]).succeeds();

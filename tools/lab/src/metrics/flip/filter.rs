@@ -158,9 +158,9 @@ mod tests {
         let turned = plane([30, 30], |_, y| if y < 15 { 0.0 } else { 100.0 });
         let strengths = |plane: &Plane| Feature::new(67.0).strengths(plane).collect::<Vec<_>>();
         let (a, b) = (strengths(&edge), strengths(&turned));
-        for i in 0..900 {
-            let j = (i % 30) * 30 + i / 30;
-            assert!((a[i][0] - b[j][0]).abs() < 1e-5 && (a[i][1] - b[j][1]).abs() < 1e-5);
+        for (i, [edge, point]) in a.iter().enumerate() {
+            let [turned_edge, turned_point] = b[(i % 30) * 30 + i / 30];
+            assert!((edge - turned_edge).abs() < 1e-5 && (point - turned_point).abs() < 1e-5);
         }
         // A step of Y from 0 to 100 is one of 100/116, and the edge detector's weights of one sign sum to 1.
         assert!((a[14][0] - 100.0 / 116.0).abs() < 0.1, "{}", a[14][0]);
