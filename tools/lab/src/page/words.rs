@@ -81,13 +81,14 @@ pub(super) fn command(words: &[String]) -> String {
 
 /// How often and with which knob a cell's graph was run.
 pub(super) fn run_as(cell: &Cell) -> String {
-    let variants = cell.variants.iter().map(|variant| {
+    let used: Vec<_> = cell.variants.iter().filter(|variant| variant.weight > 0.0).collect();
+    let variants = used.iter().map(|variant| {
         let run = match variant.knob {
             Some(knob) => format!("knob {}", number(knob)),
             None if variant.frames == 1 => "1 frame".into(),
             None => format!("{} frames", variant.frames),
         };
-        if cell.variants.len() == 1 { run } else { format!("{} % {run}", number(100.0 * variant.weight)) }
+        if used.len() == 1 { run } else { format!("{} % {run}", number(100.0 * variant.weight)) }
     });
     variants.collect::<Vec<_>>().join(" + ")
 }
@@ -112,6 +113,7 @@ pub(super) fn protocol(protocol: &Protocol) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compare::report::Variant;
 
     #[test]
     fn numbers() {
@@ -133,6 +135,14 @@ mod tests {
             assert_eq!(number(value), text);
         }
         assert_eq!((signed_percent(-0.0123), thousands(1_234_567), thousands(12)), ("−1.23 %".into(), "1,234,567".into(), "12".into()));
+    }
+
+    #[test]
+    fn runs_that_count() {
+        let variant = |frames, weight| Variant { frames, weight, ..Variant::default() };
+        let run = |variants: Vec<Variant>| run_as(&Cell { variants, ..Cell::default() });
+        assert_eq!(run(vec![variant(2, 1.0), variant(3, 0.0)]), "2 frames");
+        assert_eq!(run(vec![variant(1, 0.25), variant(2, 0.75)]), "25.0 % 1 frame + 75.0 % 2 frames");
     }
 
     #[test]

@@ -50,14 +50,14 @@ function errorAgainstTime(element, points, names) {
   const guides = series.flatMap((s) => slope(s[0], x.domain, s[0].graph));
   const lines = series.filter((s) => s.length > 1).flat(), single = usable.filter((p) => !lines.includes(p));
   show(element, Plot.plot(base(element, {
-    x, y, clip: true,
+    x, y,
     marks: [
       Plot.line(guides, {x: "time", y: "error", z: "graph", stroke: MUTED, strokeDasharray: "2 4", strokeOpacity: 0.8, clip: true}),
       Plot.areaY(lines, {x: "time", y1: low, y2: high, z: "graph", fill: "color", fillOpacity: 0.16, clip: true}),
       Plot.line(lines, {x: "time", y: "error", z: "graph", stroke: "color", strokeWidth: 2, clip: true}),
       Plot.ruleX(single, {x: "time", y1: low, y2: high, stroke: "color", strokeWidth: 2}),
       Plot.dot(usable, {x: "time", y: "error", fill: "color", r: 4, stroke: "var(--page)", strokeWidth: 1.2}),
-      Plot.text(single, {x: "time", y: "error", text: "name", dx: 9, textAnchor: "start", fill: "currentColor", stroke: "var(--card)", strokeWidth: 4}),
+      ...nameMarks(single, x.domain),
       Plot.tip(usable, Plot.pointer({x: "time", y: "error", title: label, fill: "var(--card)", stroke: "var(--line)"})),
     ],
   })));
@@ -75,17 +75,25 @@ function pareto(element, points, names) {
   const low = (p) => (positive(p.low) ? p.low : p.error), high = (p) => (positive(p.high) ? p.high : p.error);
   const front = usable.filter((p) => !usable.some((q) => q !== p && q.time <= p.time && q.error <= p.error)).sort((a, b) => a.time - b.time);
   const times = usable.flatMap((p) => [p.time_low ?? p.time, p.time_high ?? p.time]);
+  const x = logAxis(times.every((t) => t === times[0]) ? [times[0] / 2, times[0] * 2] : times, names.x);
   show(element, Plot.plot(base(element, {
-    x: logAxis(times.every((t) => t === times[0]) ? [times[0] / 2, times[0] * 2] : times, names.x), y: logAxis(usable.flatMap((p) => [low(p), high(p)]), names.y),
+    x, y: logAxis(usable.flatMap((p) => [low(p), high(p)]), names.y),
     marks: [
       Plot.line(front, {x: "time", y: "error", curve: "step-after", stroke: MUTED, strokeWidth: 1.5}),
       Plot.ruleX(usable, {x: "time", y1: low, y2: high, stroke: "color", strokeWidth: 1.5}),
       Plot.ruleY(usable, {y: "error", x1: (p) => p.time_low ?? p.time, x2: (p) => p.time_high ?? p.time, stroke: "color", strokeWidth: 1.5}),
       Plot.dot(usable, {x: "time", y: "error", fill: (p) => (front.includes(p) ? p.color : "var(--page)"), stroke: "color", strokeWidth: 2, r: 5}),
-      Plot.text(firsts(usable), {x: "time", y: "error", text: "name", dx: 9, textAnchor: "start", fill: "currentColor", stroke: "var(--card)", strokeWidth: 4}),
+      ...nameMarks(firsts(usable), x.domain),
       Plot.tip(usable, Plot.pointer({x: "time", y: "error", title: label, fill: "var(--card)", stroke: "var(--line)"})),
     ],
   })));
+}
+
+/** Names beside points, towards the middle of the plot. */
+function nameMarks(points, [from, to]) {
+  const far = (p) => p.time > from ** 0.4 * to ** 0.6;
+  return [false, true].map((right) => Plot.text(points.filter((p) => far(p) === right), {x: "time", y: "error", text: "name", dx: right ? -9 : 9,
+    textAnchor: right ? "end" : "start", fill: "currentColor", stroke: "var(--card)", strokeWidth: 4}));
 }
 
 /** The first point of every graph. */
