@@ -7,10 +7,11 @@ import package::base::math::{HUGE, frame_of, max3};
 import package::base::pack::{pack_half4, pack_unit, unpack_half4, unpack_unit};
 import package::bsdf::{Bsdf, BsdfSample, MIN_ALPHA, bsdf_pdf, bsdf_sample, bsdf_value};
 import package::frame::frame::{camera_at};
-import package::scene::geometry::{Instance, NONE, instance_at, normal_to_world, point_to_world, triangle_at, triangle_infos, vector_to_world};
-import package::scene::material::{DOUBLE_SIDED, Material, UNLIT, emission_at, material_at, materials};
+import package::scene::geometry::{Instance, NONE, info_of, instance_at, normal_to_world, point_to_world, triangle_at, vector_to_world};
+import package::scene::material::{DOUBLE_SIDED, Material, UNLIT, emission_at, material_at, stored_material};
 import package::scene::ray::{Hit, Ray, leave};
-@if(normal_maps) import package::scene::material::{textured, uvs_of};
+@if(normal_maps) import package::base::table::{floats};
+@if(normal_maps) import package::scene::material::{interpolate, textured, uvs_of};
 
 struct Surface {
     position: vec3<f32>,
@@ -92,7 +93,7 @@ fn surface_at(hit: Hit, view: vec3<f32>, when: u32) -> Surface {
     let b = hit.barycentrics;
     let position = point_to_world(instance, t.a + b.x * (t.b - t.a) + b.y * (t.c - t.a));
     let front = front_normal(instance, hit.triangle);
-    let m = material_at(triangle_infos[hit.triangle].material, hit.triangle, b);
+    let m = material_at(info_of(hit.triangle).material, hit.triangle, b);
     let n = shading_normal(hit, instance, m, view);
     let reach = abs(instance.to_world_x.xyz) + abs(instance.to_world_y.xyz) + abs(instance.to_world_z.xyz);
     let size = max3(reach) * max(max3(abs(t.a)), max(max3(abs(t.b)), max3(abs(t.c))));
@@ -120,13 +121,13 @@ fn shading_normal(hit: Hit, instance: Instance, m: Material, view: vec3<f32>) ->
     return towards(n, view);
 }
 
-/// Tangents with handedness, of a triangle's corners.
-@if(normal_maps) @group(0) @binding(0) var<storage, read> triangle_tangents: array<array<vec4<f32>, 3>>;
+/// Tangents with handedness of a triangle's corners, 3 texels a triangle.
+@if(normal_maps) @group(0) @binding(0) var triangle_tangents: texture_2d<u32>;
 
 @if(normal_maps) fn normal_mapped(hit: Hit, instance: Instance, m: Material, n: vec3<f32>) -> vec3<f32> {
-    let corners = triangle_tangents[hit.triangle];
+    let at = 3u * hit.triangle;
     let b = hit.barycentrics;
-    let t = corners[0] + b.x * (corners[1] - corners[0]) + b.y * (corners[2] - corners[0]);
+    let t = interpolate(floats(triangle_tangents, at), floats(triangle_tangents, at + 1u), floats(triangle_tangents, at + 2u), b);
     let along = vector_to_world(instance, t.xyz);
     let tangent = along - n * dot(n, along);
     if (dot(tangent, tangent) <= 0.0) { return n; }
@@ -140,8 +141,8 @@ fn shading_normal(hit: Hit, instance: Instance, m: Material, view: vec3<f32>) ->
 
 /// Radiance that leaves the hit towards `view` because the surface itself emits: front faces, both sides where double-sided.
 fn emitted(hit: Hit, view: vec3<f32>, when: u32) -> vec3<f32> {
-    let id = triangle_infos[hit.triangle].material;
-    let flags = materials[id].flags;
+    let id = info_of(hit.triangle).material;
+    let flags = stored_material(id).flags;
     if ((flags & UNLIT) != 0u) { return vec3<f32>(0.0); }
     let front = dot(front_normal(instance_at(hit.instance, when), hit.triangle), view) > 0.0;
     if (!front && (flags & DOUBLE_SIDED) == 0u) { return vec3<f32>(0.0); }
@@ -152,7 +153,7 @@ fn emitted(hit: Hit, view: vec3<f32>, when: u32) -> vec3<f32> {
 fn shown(r: SurfaceRecord, view: vec3<f32>, when: u32) -> vec3<f32> {
     let hit = Hit(r.distance, r.instance, r.triangle, r.barycentrics);
     @if(unlit) {
-        let m = material_at(triangle_infos[r.triangle].material, r.triangle, r.barycentrics);
+        let m = material_at(info_of(r.triangle).material, r.triangle, r.barycentrics);
         if ((m.flags & UNLIT) != 0u) { return m.base_color.rgb; }
     }
     return emitted(hit, view, when);

@@ -8,8 +8,8 @@
 import package::base::math::{HUGE, PI, luminance, max3};
 import package::base::sampling::{sample_triangle, triangle_uv};
 import package::frame::frame::{NOW, frame};
-import package::scene::geometry::{NONE, instance_at, is_solid, point_to_world, triangle_at, triangle_infos};
-import package::scene::material::{DOUBLE_SIDED, emission_at, materials};
+import package::scene::geometry::{NONE, info_of, instance_at, is_solid, point_to_world, triangle_at};
+import package::scene::material::{DOUBLE_SIDED, emission_at, stored_material};
 import package::scene::ray::{Hit, Ray, RELATIVE_ERROR};
 @if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance, environment_uv};
 @if(punctual_lights) import package::scene::punctual::{Punctual, punctual_at, punctual_falloff};
@@ -100,14 +100,14 @@ fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> 
     let b = point_to_world(instance, t.b);
     let c = point_to_world(instance, t.c);
     let n = cross(b - a, c - a) * select(1.0, -1.0, instance.mirrored != 0u);
-    let material = triangle_infos[light.triangle].material;
+    let material = info_of(light.triangle).material;
     var p: LightPoint;
     p.position = a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
     p.normal = normalize(n);
     // One that was squashed is in no hierarchy and shines nowhere, but may still be remembered.
     p.area = select(0.0, 0.5 * length(n), is_solid(instance));
     p.emission = emission_at(material, light.triangle, barycentrics);
-    p.double_sided = (materials[material].flags & DOUBLE_SIDED) != 0u;
+    p.double_sided = (stored_material(material).flags & DOUBLE_SIDED) != 0u;
     p.size = max(max3(abs(a)), max(max3(abs(b)), max3(abs(c))));
     p.light = id;
     p.when = when;
@@ -153,7 +153,7 @@ fn light_of(hit: Hit) -> u32 {
         return NONE;
     }
     @if(emissive_meshes) {
-        let rank = triangle_infos[hit.triangle].emissive;
+        let rank = info_of(hit.triangle).emissive;
         if (rank != NONE) { return instance_at(hit.instance, NOW).first_light + rank; }
     }
     return NONE;

@@ -2,12 +2,12 @@
 
 @if(alpha) import package::base::rng::{pcg4d};
 @if(alpha) import package::frame::frame::{frame};
-@if(alpha) import package::scene::geometry::{triangle_infos};
+@if(alpha) import package::scene::geometry::{info_of};
 @if(alpha) import package::scene::material::{opacity_at};
 
 /// The coin is a hash of the hit and of the frame, so that every ray tosses its own.
 @if(alpha) fn stops(instance: u32, triangle: u32, barycentrics: vec2<f32>, t: f32) -> bool {
-    let opacity = opacity_at(triangle_infos[triangle].material, triangle, barycentrics);
+    let opacity = opacity_at(info_of(triangle).material, triangle, barycentrics);
     if (opacity >= 1.0) { return true; }
     let place = vec4<u32>(bitcast<vec2<u32>>(barycentrics), bitcast<u32>(t), triangle ^ (instance * 0x9e3779b9u));
     let bits = pcg4d(pcg4d(place) ^ vec4<u32>(frame.seed, frame.index, 0x51ed270bu));

@@ -6,6 +6,7 @@
 //! of the bilinear map over it, so that the density is positive wherever the map is.
 
 import package::base::math::{PI};
+import package::base::table::{floats, word};
 
 struct EnvironmentInfo {
     /// World direction to the map's: rows.
@@ -17,9 +18,13 @@ struct EnvironmentInfo {
 }
 
 @group(0) @binding(0) var<uniform> environment_info: EnvironmentInfo;
-@group(0) @binding(1) var<storage, read> environment_texels: array<vec4<f32>>;
-/// `height` cumulative sums of rows, then for each row `width` cumulative sums of its texels; each ends at 1.
-@group(0) @binding(2) var<storage, read> environment_cdf: array<f32>;
+@group(0) @binding(1) var environment_texels: texture_2d<u32>;
+/// `height` cumulative sums of rows, then for each row `width` cumulative sums of its texels; each ends at 1. Four a texel.
+@group(0) @binding(2) var environment_cdf: texture_2d<u32>;
+
+fn cdf(at: u32) -> f32 {
+    return bitcast<f32>(word(environment_cdf, at));
+}
 
 fn to_map(d: vec3<f32>) -> vec2<f32> {
     let m = vec3<f32>(dot(environment_info.to_map_x, d), dot(environment_info.to_map_y, d), dot(environment_info.to_map_z, d));
@@ -36,7 +41,7 @@ fn environment_texel(x: i32, y: i32) -> vec3<f32> {
     let w = i32(environment_info.width);
     let column = ((x % w) + w) % w;
     let row = clamp(y, 0, i32(environment_info.height) - 1);
-    return environment_texels[row * w + column].rgb;
+    return floats(environment_texels, u32(row * w + column)).rgb;
 }
 
 fn environment_radiance(direction: vec3<f32>) -> vec3<f32> {
@@ -56,14 +61,14 @@ fn search(first: u32, count: u32, u: f32) -> u32 {
     var high = count - 1u;
     while (low < high) {
         let middle = (low + high) / 2u;
-        if (environment_cdf[first + middle] > u) { high = middle; } else { low = middle + 1u; }
+        if (cdf(first + middle) > u) { high = middle; } else { low = middle + 1u; }
     }
     return low;
 }
 
 /// Lower and upper cumulative value of entry `at`.
 fn bounds(first: u32, at: u32) -> vec2<f32> {
-    return vec2<f32>(select(environment_cdf[first + max(at, 1u) - 1u], 0.0, at == 0u), environment_cdf[first + at]);
+    return vec2<f32>(select(cdf(first + max(at, 1u) - 1u), 0.0, at == 0u), cdf(first + at));
 }
 
 /// Unit world direction for uv ∈ [0, 1)².

@@ -17,8 +17,6 @@ struct TriangleInfo {
 struct Instance {
     to_world_x: vec4<f32>, to_world_y: vec4<f32>, to_world_z: vec4<f32>,
     to_object_x: vec4<f32>, to_object_y: vec4<f32>, to_object_z: vec4<f32>,
-    /// How the mesh's hierarchy begins, in the words of what fills slot `trace`.
-    root: u32,
     /// Index of the mesh's first triangle.
     first_triangle: u32,
     /// Index of the light made of the mesh's first emissive triangle.
@@ -31,7 +29,8 @@ const NONE: u32 = 0xffffffffu;
 
 /// Of `Triangle`, 3 texels each.
 @group(0) @binding(0) var triangles: texture_2d<u32>;
-@group(0) @binding(1) var<storage, read> triangle_infos: array<TriangleInfo>;
+/// Of `TriangleInfo`, two a texel.
+@group(0) @binding(1) var triangle_infos: texture_2d<u32>;
 /// Of `Instance`, 7 texels each.
 @group(0) @binding(2) var instances: texture_2d<u32>;
 /// The same instances last frame.
@@ -42,6 +41,12 @@ fn triangle_at(id: u32) -> Triangle {
     let b = words(triangles, 3u * id + 1u);
     let c = words(triangles, 3u * id + 2u);
     return Triangle(bitcast<vec3<f32>>(a.xyz), a.w, bitcast<vec3<f32>>(b.xyz), b.w, bitcast<vec3<f32>>(c.xyz), c.w);
+}
+
+fn info_of(triangle: u32) -> TriangleInfo {
+    let two = words(triangle_infos, triangle / 2u);
+    let one = select(two.xy, two.zw, (triangle & 1u) != 0u);
+    return TriangleInfo(one.x, one.y);
 }
 
 fn instance_at(id: u32, when: u32) -> Instance {
@@ -57,7 +62,7 @@ fn instance_in(table: texture_2d<u32>, id: u32) -> Instance {
     return Instance(
         floats(table, at), floats(table, at + 1u), floats(table, at + 2u),
         floats(table, at + 3u), floats(table, at + 4u), floats(table, at + 5u),
-        last.x, last.y, last.z, last.w,
+        last.x, last.y, last.z,
     );
 }
 

@@ -2,6 +2,7 @@
 
 @if(textures) import package::scene::texture::{sample_texture};
 @if(vertex_colors) import package::base::pack::{unpack_half4};
+import package::base::table::{floats, words};
 import package::scene::geometry::{NONE};
 
 /// glTF metallic-roughness with KHR_materials_ior, specular, emissive_strength, unlit.
@@ -34,10 +35,25 @@ const ALPHA_BLEND: u32 = 8u;
 /// Texture coordinates of a triangle's corners, both sets.
 struct TriangleUvs { a: vec4<f32>, b: vec4<f32>, c: vec4<f32> }
 
-@group(0) @binding(0) var<storage, read> materials: array<Material>;
-@if(textures) @group(0) @binding(1) var<storage, read> triangle_uvs: array<TriangleUvs>;
-/// Linear RGBA halves of the corners.
-@if(vertex_colors) @group(0) @binding(2) var<storage, read> triangle_colors: array<array<vec2<u32>, 3>>;
+/// Of `Material`, 6 texels each.
+@group(0) @binding(0) var materials: texture_2d<u32>;
+/// Of `TriangleUvs`, 3 texels each.
+@if(textures) @group(0) @binding(1) var triangle_uvs: texture_2d<u32>;
+/// Linear RGBA halves of the corners, 2 texels a triangle.
+@if(vertex_colors) @group(0) @binding(2) var triangle_colors: texture_2d<u32>;
+
+/// As it is stored, without textures and vertex colours.
+fn stored_material(id: u32) -> Material {
+    let at = 6u * id;
+    let emission = words(materials, at + 1u);
+    let specular = floats(materials, at + 2u);
+    let rest = floats(materials, at + 3u);
+    let textures = words(materials, at + 4u);
+    return Material(
+        floats(materials, at), bitcast<vec3<f32>>(emission.xyz), emission.w, specular.xyz, specular.w, rest.x, rest.y, rest.z, rest.w,
+        textures.x, textures.y, textures.z, textures.w, floats(materials, at + 5u).x,
+    );
+}
 
 fn interpolate(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, barycentrics: vec2<f32>) -> vec4<f32> {
     return a + barycentrics.x * (b - a) + barycentrics.y * (c - a);
@@ -45,8 +61,14 @@ fn interpolate(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, barycentrics: vec2<f32>
 
 /// (u0, v0, u1, v1).
 @if(textures) fn uvs_of(triangle: u32, barycentrics: vec2<f32>) -> vec4<f32> {
-    let t = triangle_uvs[triangle];
-    return interpolate(t.a, t.b, t.c, barycentrics);
+    let at = 3u * triangle;
+    return interpolate(floats(triangle_uvs, at), floats(triangle_uvs, at + 1u), floats(triangle_uvs, at + 2u), barycentrics);
+}
+
+@if(vertex_colors) fn vertex_color(triangle: u32, barycentrics: vec2<f32>) -> vec4<f32> {
+    let both = words(triangle_colors, 2u * triangle);
+    let third = words(triangle_colors, 2u * triangle + 1u).xy;
+    return interpolate(unpack_half4(both.xy), unpack_half4(both.zw), unpack_half4(third), barycentrics);
 }
 
 @if(textures) fn textured(id: u32, uvs: vec4<f32>) -> vec4<f32> {
@@ -56,7 +78,7 @@ fn interpolate(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, barycentrics: vec2<f32>
 
 /// The material with its textures and vertex colours applied at one point.
 fn material_at(id: u32, triangle: u32, barycentrics: vec2<f32>) -> Material {
-    var m = materials[id];
+    var m = stored_material(id);
     @if(textures) {
         let uvs = uvs_of(triangle, barycentrics);
         m.base_color *= textured(m.base_color_texture, uvs);
@@ -66,33 +88,32 @@ fn material_at(id: u32, triangle: u32, barycentrics: vec2<f32>) -> Material {
         m.emission *= textured(m.emission_texture, uvs).rgb;
     }
     @if(vertex_colors) {
-        let c = triangle_colors[triangle];
-        m.base_color *= interpolate(unpack_half4(c[0]), unpack_half4(c[1]), unpack_half4(c[2]), barycentrics);
+        m.base_color *= vertex_color(triangle, barycentrics);
     }
     return m;
 }
 
 /// Emitted radiance alone, for lights.
 fn emission_at(id: u32, triangle: u32, barycentrics: vec2<f32>) -> vec3<f32> {
-    var emission = materials[id].emission;
+    let m = stored_material(id);
+    var emission = m.emission;
     @if(textures) {
-        emission *= textured(materials[id].emission_texture, uvs_of(triangle, barycentrics)).rgb;
+        emission *= textured(m.emission_texture, uvs_of(triangle, barycentrics)).rgb;
     }
     return emission;
 }
 
 /// Opacity at a point: 0 or 1 for masks.
 @if(alpha) fn opacity_at(id: u32, triangle: u32, barycentrics: vec2<f32>) -> f32 {
-    let flags = materials[id].flags;
-    if ((flags & (ALPHA_MASK | ALPHA_BLEND)) == 0u) { return 1.0; }
-    var alpha = materials[id].base_color.a;
+    let m = stored_material(id);
+    if ((m.flags & (ALPHA_MASK | ALPHA_BLEND)) == 0u) { return 1.0; }
+    var alpha = m.base_color.a;
     @if(textures) {
-        alpha *= textured(materials[id].base_color_texture, uvs_of(triangle, barycentrics)).a;
+        alpha *= textured(m.base_color_texture, uvs_of(triangle, barycentrics)).a;
     }
     @if(vertex_colors) {
-        let c = triangle_colors[triangle];
-        alpha *= interpolate(unpack_half4(c[0]), unpack_half4(c[1]), unpack_half4(c[2]), barycentrics).a;
+        alpha *= vertex_color(triangle, barycentrics).a;
     }
-    if ((flags & ALPHA_MASK) != 0u) { return select(0.0, 1.0, alpha >= materials[id].alpha_cutoff); }
+    if ((m.flags & ALPHA_MASK) != 0u) { return select(0.0, 1.0, alpha >= m.alpha_cutoff); }
     return alpha;
 }

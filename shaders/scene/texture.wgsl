@@ -1,6 +1,7 @@
-//! Textures: texels in one storage buffer, filtered here, so that no binding arrays are needed and every adapter filters alike.
+//! Textures: texels in one table, filtered here, so that no binding arrays are needed and every adapter filters alike.
 
 import package::base::color::{srgb_to_linear};
+import package::base::table::{floats, word, words};
 
 /// One use of an image.
 struct Texture {
@@ -15,9 +16,15 @@ struct Texture {
     flags: u32,
 }
 
-@group(0) @binding(0) var<storage, read> textures: array<Texture>;
-/// RGBA, 8 bits each, red lowest.
-@group(0) @binding(1) var<storage, read> texels: array<u32>;
+/// Of `Texture`, 3 texels each.
+@group(0) @binding(0) var textures: texture_2d<u32>;
+/// RGBA, 8 bits each, red lowest; four colours a texel.
+@group(0) @binding(1) var texels: texture_2d<u32>;
+
+fn texture_use(id: u32) -> Texture {
+    let last = words(textures, 3u * id + 2u);
+    return Texture(floats(textures, 3u * id), floats(textures, 3u * id + 1u), last.x, last.y, last.z, last.w);
+}
 
 fn wrap(i: i32, size: i32, mode: u32) -> i32 {
     if (mode == 1u) { return clamp(i, 0, size - 1); }
@@ -30,14 +37,14 @@ fn wrap(i: i32, size: i32, mode: u32) -> i32 {
 fn texel(t: Texture, x: i32, y: i32) -> vec4<f32> {
     let column = wrap(x, i32(t.width), t.flags & 3u);
     let row = wrap(y, i32(t.height), (t.flags >> 2u) & 3u);
-    let c = unpack4x8unorm(texels[t.first + u32(row) * t.width + u32(column)]);
+    let c = unpack4x8unorm(word(texels, t.first + u32(row) * t.width + u32(column)));
     if ((t.flags & 32u) == 0u) { return c; }
     return vec4<f32>(srgb_to_linear(c.rgb), c.a);
 }
 
 /// The value of texture `id` at the vertex coordinates `uv` of the set that the texture asks for.
 fn sample_texture(id: u32, uv0: vec2<f32>, uv1: vec2<f32>) -> vec4<f32> {
-    let t = textures[id];
+    let t = texture_use(id);
     let uv = vec3<f32>(select(uv0, uv1, (t.flags & 64u) != 0u), 1.0);
     let p = vec2<f32>(dot(t.u_row.xyz, uv), dot(t.v_row.xyz, uv)) * vec2<f32>(f32(t.width), f32(t.height));
     if ((t.flags & 16u) == 0u) {

@@ -7,12 +7,14 @@ mod moving;
 mod nodes;
 mod still;
 mod store;
+mod wide;
 
 use crate::{Batch, Context, Error, FrameInfo, Globals};
 use aquifer_scene::{Features, Scene};
 use moving::{Moving, State};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use still::Still;
+use wide::Wide;
 
 /// Which camera, and how time goes by.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +45,9 @@ pub struct SceneGlobals {
     moving: Moving,
     batches: Vec<Batch>,
     last: Option<State>,
+    context: Context,
+    /// `None` inside where it could not be made, which was told.
+    wide: OnceLock<Option<Wide>>,
 }
 
 impl SceneGlobals {
@@ -56,7 +61,16 @@ impl SceneGlobals {
         let still = Still::upload(context, &scene, &features)?;
         let first = State::of(&scene, &still, &view, 0).map_err(refused)?;
         let moving = Moving::new(context, &features, &first)?;
-        Ok(SceneGlobals { batches: batches(&scene), scene, view, still, moving, last: None })
+        Ok(SceneGlobals {
+            batches: batches(&scene),
+            scene,
+            view,
+            still,
+            moving,
+            last: None,
+            context: context.clone(),
+            wide: OnceLock::new(),
+        })
     }
 
     /// Entries of the traversal stack that a scene needs; the trace shaders take it as `scene/limits::STACK`.
@@ -72,6 +86,11 @@ impl SceneGlobals {
         let slack = if Features::of(scene).moving_objects { 16 } else { 0 };
         // A multiple of 8, so that similar scenes share pipelines.
         Ok((upper + lower + slack).next_multiple_of(8))
+    }
+
+    fn wide(&self) -> Option<&Wide> {
+        let make = || Wide::upload(&self.context, &self.scene);
+        self.wide.get_or_init(|| make().inspect_err(|error| tracing::error!(%error, "no wide hierarchies")).ok()).as_ref()
     }
 
     /// Bytes on the device.
@@ -133,6 +152,9 @@ impl Globals for SceneGlobals {
     }
 
     fn resource(&self, module: &str, name: &str) -> Option<wgpu::BindingResource<'_>> {
+        if module == "trace/cwbvh" {
+            return self.wide()?.store(name).map(store::Store::binding);
+        }
         let name = format!("{module}::{name}");
         self.moving.store(&name).or_else(|| self.still.store(&name)).map(store::Store::binding)
     }

@@ -1,5 +1,6 @@
 //! One level of the bounding volume hierarchy: nodes as the GPU reads them, built by obvhs.
 
+use crate::Mesh;
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3A;
 use obvhs::{
@@ -78,6 +79,11 @@ impl Bvh {
         flatten(&build_tree(boxes, options))
     }
 
+    /// Over the triangles of a mesh.
+    pub fn of(mesh: &Mesh, options: &BvhOptions) -> (Bvh, Vec<u32>) {
+        Bvh::build(&triangle_boxes(mesh), options)
+    }
+
     /// The root's box, or `None` when there are no primitives.
     pub fn bounds(&self) -> Option<Aabb> {
         self.nodes.first().map(BvhNode::aabb)
@@ -102,7 +108,7 @@ impl BvhNode {
 }
 
 /// The steps of `obvhs::bvh2::builder::build_bvh2`, without its validation, which takes longer than the build.
-fn build_tree(boxes: &[Aabb], options: &BvhOptions) -> Bvh2 {
+pub(crate) fn build_tree(boxes: &[Aabb], options: &BvhOptions) -> Bvh2 {
     let params = options.quality.params();
     let indices = (0..boxes.len() as u32).collect();
     let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
@@ -143,6 +149,12 @@ fn flatten(tree: &Bvh2) -> (Bvh, Vec<u32>) {
         }
     }
     (bvh, order)
+}
+
+/// Boxes of a mesh's triangles.
+pub(crate) fn triangle_boxes(mesh: &Mesh) -> Vec<Aabb> {
+    let triangle = |index| padded(Aabb::from_points(&mesh.corners(index).map(Into::into)));
+    (0..mesh.triangles.len()).map(triangle).collect()
 }
 
 /// Grows a box by a few units in the last place, so that the rounding of slab tests and transforms cannot lose what lies on its faces.

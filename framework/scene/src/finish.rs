@@ -6,9 +6,8 @@ mod normals;
 mod tangents;
 mod triangles;
 
-use crate::{Bvh, BvhOptions, Material, Mesh, Scene, SceneError, bvh::padded};
+use crate::{Bvh, BvhOptions, Material, Mesh, Scene, SceneError};
 use glam::Vec2;
-use obvhs::aabb::Aabb;
 
 impl Scene {
     /// [`Scene::finish_with`] default options.
@@ -90,15 +89,10 @@ fn fill_uvs(mesh: &mut Mesh, materials: &[Material]) -> usize {
 }
 
 fn build_bvh(mesh: &mut Mesh, options: &BvhOptions) {
-    let boxes: Vec<Aabb> = (0..mesh.triangles.len()).map(|index| padded(triangle_box(mesh, index))).collect();
-    let (bvh, order) = Bvh::build(&boxes, options);
+    let (bvh, order) = Bvh::of(mesh, options);
     mesh.triangles = order.iter().map(|&old| mesh.triangles[old as usize]).collect();
     mesh.materials = order.iter().map(|&old| mesh.materials[old as usize]).collect();
     mesh.bvh = bvh;
-}
-
-fn triangle_box(mesh: &Mesh, index: usize) -> Aabb {
-    Aabb::from_points(&mesh.corners(index).map(Into::into))
 }
 
 #[cfg(test)]
@@ -138,7 +132,7 @@ mod tests {
         assert_eq!(mesh.triangles.len(), 162);
         for node in mesh.bvh.nodes.iter().filter(|node| node.count > 0) {
             for index in node.first..node.first + node.count {
-                let bounds = triangle_box(mesh, index as usize);
+                let bounds = crate::bvh::triangle_boxes(mesh)[index as usize];
                 assert_eq!(bounds.union(&node.aabb()), node.aabb());
             }
         }

@@ -21,6 +21,7 @@ mod moment;
 mod scene;
 mod tlas;
 mod trace;
+mod wide;
 
 pub use alias::{AliasEntry, AliasTable};
 pub use bvh::{Bvh, BvhNode, BvhOptions, BvhQuality};
@@ -34,3 +35,4 @@ pub use load::*;
 pub use scene::*;
 pub use tlas::Tlas;
 pub use trace::{CpuTracer, Hit};
+pub use wide::WideBvh;

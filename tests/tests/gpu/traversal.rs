@@ -15,7 +15,8 @@ import package::base::math::{HUGE};
 import package::frame::frame::{NOW};
 import package::scene::geometry::{NONE};
 import package::scene::ray::{Ray};
-import package::slot::trace::{closest, occluded, stack_overflow};
+import package::scene::hierarchy::{stack_overflow};
+import package::slot::trace::{closest, occluded};
 struct Params {
     /// @default 0
     low_x: f32,
@@ -67,14 +68,16 @@ fn shaders_and_obvhs_hit_the_same_triangles() {
             })
             .collect();
         let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
-        let graph = "transport = 'emission'\noutput = 'test_trace.traced'\n[pass.test_trace]";
-        let mut renderer =
-            Parts { shaders: &[("pass/test_trace", KERNEL)], settings: &settings, ..Parts::new(&scene, graph) }.renderer(&context);
-        renderer.frame().unwrap();
-        let words = renderer.read_f32("test_trace.traced").unwrap();
-        assert_eq!(words.len(), RAYS * 12);
         let tracer = CpuTracer::new(&scene, &moment, &tlas);
-        compare(name, &words, &tracer, &scene, &moment);
+        for filling in ["bvh2", "cwbvh"] {
+            let graph = format!("transport = 'emission'\noutput = 'test_trace.traced'\n[slots]\ntrace = '{filling}'\n[pass.test_trace]");
+            let mut renderer =
+                Parts { shaders: &[("pass/test_trace", KERNEL)], settings: &settings, ..Parts::new(&scene, &graph) }.renderer(&context);
+            renderer.frame().unwrap();
+            let words = renderer.read_f32("test_trace.traced").unwrap();
+            assert_eq!(words.len(), RAYS * 12);
+            compare(&format!("{name} by {filling}"), &words, &tracer, &scene, &moment);
+        }
     }
 }
 

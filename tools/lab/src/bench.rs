@@ -2,6 +2,7 @@
 
 pub mod device;
 pub mod host;
+pub mod loading;
 pub mod rays;
 pub mod tracing;
 pub mod turns;

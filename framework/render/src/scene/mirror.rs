@@ -39,7 +39,7 @@ twins! {
     /// A mesh in the world.
     "scene/geometry" Instance {
         to_world_x: [f32; 4], to_world_y: [f32; 4], to_world_z: [f32; 4], to_object_x: [f32; 4], to_object_y: [f32; 4], to_object_z: [f32; 4],
-        root: u32, first_triangle: u32, first_light: u32, mirrored: u32,
+        first_triangle: u32, first_light: u32, mirrored: u32, padding: u32,
     }
     /// A surface.
     "scene/material" Material {
@@ -82,12 +82,23 @@ impl Camera {
 
 impl Instance {
     /// Of an instance that casts and receives: one squashed flat keeps zeros, since no leaf of the hierarchy holds it.
-    pub fn new(instance: &scene::Instance, root: u32, first_triangle: u32, first_light: u32) -> Instance {
+    pub fn new(instance: &scene::Instance, first_triangle: u32, first_light: u32) -> Instance {
         let [to_world_x, to_world_y, to_world_z] = rows(&instance.transform);
         let inverse = if instance.is_solid() { instance.transform.inverse() } else { Affine3A::ZERO };
         let [to_object_x, to_object_y, to_object_z] = rows(&inverse);
         let mirrored = u32::from(instance.mirrors());
-        Instance { to_world_x, to_world_y, to_world_z, to_object_x, to_object_y, to_object_z, root, first_triangle, first_light, mirrored }
+        Instance {
+            to_world_x,
+            to_world_y,
+            to_world_z,
+            to_object_x,
+            to_object_y,
+            to_object_z,
+            first_triangle,
+            first_light,
+            mirrored,
+            padding: 0,
+        }
     }
 }
 

@@ -46,7 +46,12 @@ impl State {
                 table: true,
                 bytes: bytes(&instances(&moment, &list, still)),
             },
-            Array { now: "trace/bvh2::tlas", before: "trace/bvh2::tlas_prev", table: true, bytes: bytes(&nodes::upper(&tlas.bvh)) },
+            Array {
+                now: "scene/hierarchy::tlas",
+                before: "scene/hierarchy::tlas_prev",
+                table: true,
+                bytes: bytes(&nodes::upper(&tlas.bvh)),
+            },
             Array {
                 now: "scene/punctual::punctuals",
                 before: "scene/punctual::punctuals_prev",
@@ -74,7 +79,7 @@ fn bytes<T: bytemuck::Pod>(records: &[T]) -> Vec<u8> {
 fn instances(moment: &Moment, list: &LightList, still: &Still) -> Vec<mirror::Instance> {
     let record = |(instance, &first_light): (&aquifer_scene::Instance, &u32)| {
         let place = still.places[instance.mesh as usize];
-        mirror::Instance::new(instance, place.root, place.first_triangle, first_light)
+        mirror::Instance::new(instance, place.first_triangle, first_light)
     };
     moment.instances.iter().zip(&list.first_of_instance).map(record).collect()
 }

@@ -21,8 +21,6 @@ pub struct Still {
 /// Where a mesh begins in the shared arrays.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// Reference to the root of its hierarchy.
-    pub root: u32,
     pub first_node: u32,
     pub first_triangle: u32,
 }
@@ -49,23 +47,24 @@ impl Still {
     }
 
     fn add<T: bytemuck::Pod>(&mut self, context: &Context, name: &'static str, records: &[T]) -> Result<(), Error> {
-        self.stores.insert(name, Store::buffer(context, name, records, wgpu::BufferUsages::STORAGE)?);
-        Ok(())
-    }
-
-    fn add_table<T: bytemuck::Pod>(&mut self, context: &Context, name: &'static str, records: &[T]) -> Result<(), Error> {
         self.stores.insert(name, Store::table(context, name, records)?);
         Ok(())
     }
 
     fn add_geometry(&mut self, context: &Context, scene: &Scene, features: &Features) -> Result<(), Error> {
-        let pairs = |(mesh, place): (&Mesh, &Place)| nodes::pairs(&mesh.bvh, place.first_node, place.first_triangle).collect::<Vec<_>>();
-        let pairs: Vec<nodes::Pair> = scene.meshes.iter().zip(&self.places).flat_map(pairs).collect();
-        self.add_table(context, "trace/bvh2::nodes", &pairs)?;
+        let placed = |mesh: usize| nodes::Placed {
+            bvh: &scene.meshes[mesh].bvh,
+            first_node: self.places[mesh].first_node,
+            first_primitive: self.places[mesh].first_triangle,
+        };
+        let pairs: Vec<nodes::Pair> = (0..scene.meshes.len()).flat_map(|mesh| placed(mesh).pairs()).collect();
+        let roots: Vec<nodes::Pair> = meshes_of_instances(scene).map(|mesh| placed(mesh).root()).collect();
+        self.add(context, "trace/bvh2::nodes", &pairs)?;
+        self.add(context, "trace/bvh2::roots", &roots)?;
         let all = |corner: fn(&Mesh, usize) -> mirror::Triangle| {
             scene.meshes.iter().flat_map(move |mesh| (0..mesh.triangles.len()).map(move |t| corner(mesh, t)))
         };
-        self.add_table(context, "scene/geometry::triangles", &all(triangle).collect::<Vec<_>>())?;
+        self.add(context, "scene/geometry::triangles", &all(triangle).collect::<Vec<_>>())?;
         let infos: Vec<_> = scene
             .meshes
             .iter()
@@ -138,10 +137,15 @@ impl Still {
     }
 }
 
+/// Instances are made from the nodes in their order, at every moment.
+pub fn meshes_of_instances(scene: &Scene) -> impl Iterator<Item = usize> {
+    scene.nodes.iter().filter_map(|node| node.mesh).map(|mesh| mesh as usize)
+}
+
 fn places(scene: &Scene) -> Vec<Place> {
     let (mut first_node, mut first_triangle) = (0, 0);
     let place = |mesh: &Mesh| {
-        let place = Place { root: nodes::root(&mesh.bvh, first_node, first_triangle), first_node, first_triangle };
+        let place = Place { first_node, first_triangle };
         first_node += mesh.bvh.nodes.len() as u32 / 2;
         first_triangle += mesh.triangles.len() as u32;
         place
@@ -172,8 +176,10 @@ fn tangents(mesh: &Mesh, corners: [u32; 3]) -> [[f32; 4]; 3] {
     corners.map(|vertex| mesh.tangents.get(vertex as usize).map_or([0.0; 4], |tangent| tangent.to_array()))
 }
 
-fn colors(mesh: &Mesh, corners: [u32; 3]) -> [[u32; 2]; 3] {
-    corners.map(|vertex| pack_half4(mesh.colors.get(vertex as usize).map_or([1.0; 4], |color| color.to_array())))
+/// With a word's room at the end, for whole texels.
+fn colors(mesh: &Mesh, corners: [u32; 3]) -> [[u32; 2]; 4] {
+    let [a, b, c] = corners.map(|vertex| pack_half4(mesh.colors.get(vertex as usize).map_or([1.0; 4], |color| color.to_array())));
+    [a, b, c, [0; 2]]
 }
 
 /// Cumulative sums of rows, then of the texels of each row, each ending at 1; of a black map all are 0.

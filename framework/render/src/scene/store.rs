@@ -29,7 +29,7 @@ impl Store {
         })
     }
 
-    /// A table of records, whole texels each.
+    /// A table of records; what the last texel has left is zeros.
     pub fn table<T: bytemuck::Pod>(context: &Context, name: &str, records: &[T]) -> Result<Store, Error> {
         let contents: &[u8] = bytemuck::cast_slice(records);
         let size = extent(contents.len());
@@ -92,8 +92,10 @@ fn write_rows(context: &Context, texture: &wgpu::Texture, bytes: &[u8]) {
         }
         let origin = wgpu::Origin3d { x: 0, y: row as u32, z: 0 };
         let place = wgpu::TexelCopyTextureInfo { texture, mip_level: 0, origin, aspect: wgpu::TextureAspect::All };
+        let mut part = part.to_vec();
+        part.resize(part.len().next_multiple_of(TEXEL), 0);
         let size = extent(part.len());
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.width * TEXEL as u32), rows_per_image: None };
-        context.queue().write_texture(place, part, layout, size);
+        context.queue().write_texture(place, &part, layout, size);
     }
 }

@@ -1,5 +1,6 @@
-//! `aquifer bench trace`
+//! `aquifer bench trace | load`
 
+mod load;
 mod trace;
 
 use crate::{failure::Failure, ui::Ui};
@@ -15,10 +16,13 @@ pub struct Args {
 enum Action {
     /// Rays a second of each ray tracer on this adapter, beside obvhs on the CPU, on the same rays
     Trace(trace::Args),
+    /// How long a scene takes to load, to build and to upload
+    Load(load::Args),
 }
 
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     match args.action {
         Action::Trace(args) => trace::run(&args, ui),
+        Action::Load(args) => load::run(&args, ui),
     }
 }

@@ -16,13 +16,19 @@ pub fn add_kernel(library: &mut Library) {
     }
 }
 
-/// Every filling of slot `trace`, the default first.
+/// Every filling of slot `trace` that needs no port of its own, the default first.
 pub fn tracers(registry: &Registry) -> Vec<String> {
     use aquifer_graph::Contracts as _;
     let default = registry.library().default_slots().remove("trace");
     let mut all = registry.slots().remove("trace").unwrap_or_default();
+    // The kernel's are the rays and their hits. One that does not compose is kept, so that its error shows.
+    all.retain(|name| registry.known(KERNEL, &filled(name)).map_or(true, |known| known.contract.ports.len() <= 2));
     all.sort_by_key(|name| Some(name) != default.as_ref());
     all
+}
+
+fn filled(tracer: &str) -> Slots {
+    Slots::from([("trace".to_owned(), tracer.to_owned())])
 }
 
 /// What a ray hit: instance (`u32::MAX` for nothing), triangle among all of the scene's, bits of t, 1 where the stack ran over.
@@ -40,8 +46,7 @@ pub fn job(
     kind: RayKind,
     (rays, width): (&[Ray], u32),
 ) -> Result<Job, Error> {
-    let slots = Slots::from([("trace".to_owned(), tracer.to_owned())]);
-    let known = registry.known(KERNEL, &slots).map_err(|source| Error::Contract { pass: tracer.to_owned(), source })?;
+    let known = registry.known(KERNEL, &filled(tracer)).map_err(|source| Error::Contract { pass: tracer.to_owned(), source })?;
     let entry = if kind == RayKind::Shadow { "any" } else { "nearest" };
     let groups = known.composed.interface.entries.iter().find(|known| known.name == entry).map_or([8, 8, 1], |entry| entry.workgroup_size);
     let height = (rays.len() as u32).div_ceil(width);

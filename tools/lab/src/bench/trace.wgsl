@@ -3,7 +3,8 @@
 import package::frame::frame::{NOW};
 import package::scene::geometry::{NONE};
 import package::scene::ray::{Hit, Ray};
-import package::slot::trace::{closest, occluded, stack_overflow};
+import package::scene::hierarchy::{stack_overflow};
+import package::slot::trace::{closest, occluded};
 
 /// Rays in a row of pixels.
 override width: u32 = 1u;
