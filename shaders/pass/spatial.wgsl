@@ -96,7 +96,8 @@ const R2 = vec2<f32>(0.7548776662, 0.5698402910);
     if (before != NOWHERE && stale[at] == 0u) {
         inputs[1] = input_of(before, BEFORE, params.cap);
         own = inputs[1].confidence;
-        count = 2u;
+        // What counts nothing is no input: where no history is wired, its surfaces are zeros.
+        count += u32(own > 0.0);
     }
     let few = own < params.low;
     var radius = params.radius * select(1.0, f32(frame.extent.y) / params.rows, params.rows > 0.0);
@@ -114,7 +115,7 @@ const R2 = vec2<f32>(0.7548776662, 0.5698402910);
         let other_before = pixel_before(pixel_of(other), motion[other], surface[other], exact, limits, &rng);
         if (other_before != NOWHERE) {
             inputs[count] = input_of(other_before, BEFORE, params.cap);
-            count += 1u;
+            count += u32(inputs[count].confidence > 0.0);
         }
     }
     reservoir[at] = combine(unpack_surface(record, NOW), &inputs, count, &rng);
