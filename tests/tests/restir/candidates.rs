@@ -23,12 +23,12 @@ slots.proposal = 'regir'
 [pass.initial]
 in.grid = 'regir.grid'";
 
-/// Frames of these graphs are independent, and so are their pixels but for the grid.
-fn compare(context: &Context, name: &str, graph: &str, settings: &[&str], shaders: &[(&str, &str)]) -> BlockComparison {
+/// Frames of these graphs are independent, and so are their pixels but for the grid. The path tracer's frames take eight paths each.
+fn compare(context: &Context, name: &str, graph: &str, settings: &[&str], shaders: &[(&str, &str)], frames: u32) -> BlockComparison {
     let scene = scene(name);
     let view = View { time: 0.3, ..View::default() };
-    let reference = path_traced(context, &scene, "direct", 48, view.clone());
-    let film = Parts { settings, shaders, view, ..Parts::new(&scene, graph) }.film(context, 128);
+    let reference = path_traced(context, &scene, "direct", frames * 3 / 8, view.clone());
+    let film = Parts { settings, shaders, view, ..Parts::new(&scene, graph) }.film(context, frames);
     let found = compare_blocks(&Blocks::of_film(&film, SIDE, Quantity::Luminance), &reference, &coarse()).unwrap();
     eprintln!("{name}, {settings:?}: {found}");
     found
@@ -39,7 +39,7 @@ fn bsdf_rays_mix_in_without_bias() {
     let Some(context) = context() else { return };
     // Triangles seen by surfaces of roughness from 0.1; the sky with a sun.
     for name in ["glossy", "outdoor"] {
-        let found = compare(&context, name, RIS, &["initial.candidates=12", "initial.bsdf_rays=4"], &[]);
+        let found = compare(&context, name, RIS, &["initial.candidates=12", "initial.bsdf_rays=4"], &[], 416);
         assert_eq!(found.verdict, Verdict::Passed, "{name}: {found}");
     }
 }
@@ -48,13 +48,13 @@ fn bsdf_rays_mix_in_without_bias() {
 fn a_wrong_mixture_is_found() {
     let Some(context) = context() else { return };
     let text = replaced(module("domain/di"), "f32(count - rays) * q +", "f32(count) * q +");
-    let found = compare(&context, "glossy", RIS, &["initial.candidates=12", "initial.bsdf_rays=4"], &[("domain/di", &text)]);
+    let found = compare(&context, "glossy", RIS, &["initial.candidates=12", "initial.bsdf_rays=4"], &[("domain/di", &text)], 128);
     assert_eq!(found.verdict, Verdict::Failed, "{found}");
 }
 
 #[test]
 fn presampled_lights_give_direct_light() {
     let Some(context) = context() else { return };
-    let found = compare(&context, "animated", FROM_GRID, &[], &[]);
+    let found = compare(&context, "animated", FROM_GRID, &[], &[], 224);
     assert_eq!(found.verdict, Verdict::Passed, "{found}");
 }

@@ -98,10 +98,10 @@ mod tests {
         let placed = Placed { bvh: &bvh, first_node: 0, first_primitive: 0 };
         let (grid, pairs) = (placed.grid(), placed.pairs());
         for (node, child) in bvh.nodes[1..].iter().zip(pairs.as_flattened()) {
-            for axis in 0..3 {
+            for (axis, planes) in child[..3].iter().enumerate() {
                 let step = f64::from(grid.step[axis]);
                 let plane = |q: u32| f64::from(grid.low[axis]) + f64::from(q) * step;
-                let (low, high) = (plane(child[axis] & 0xffff), plane(child[axis] >> 16));
+                let (low, high) = (plane(planes & 0xffff), plane(planes >> 16));
                 let (min, max) = (f64::from(node.min[axis]), f64::from(node.max[axis]));
                 assert!(low <= min && min - low < 1.001 * step, "{low} {min}");
                 assert!(max <= high && high - max < 1.001 * step, "{max} {high}");

@@ -21,7 +21,7 @@ fn schema(contracts: &dyn Contracts) -> Result<Json, Failure> {
     let fillings = contracts.slots();
     let (mut by_name, mut branches) = (Map::new(), Vec::new());
     for kind in contracts.kinds() {
-        let contract = contracts.contract(&kind, &Slots::new()).map_err(|error| Failure::new(format!("{kind}: {error}")))?;
+        let contract = widest(contracts, &kind, &fillings)?;
         by_name.insert(kind.clone(), pass(&contract, &fillings, None));
         branches.push(pass(&contract, &fillings, Some(&kind)));
     }
@@ -55,6 +55,34 @@ fn schema(contracts: &dyn Contracts) -> Result<Json, Failure> {
             "pass": { "type": "object", "properties": by_name, "additionalProperties": { "oneOf": branches } },
         },
     }))
+}
+
+/// What a kind offers with every filling of its slots, one changed at a time: a filling may bring ports and parameters of its own.
+fn widest(contracts: &dyn Contracts, kind: &str, fillings: &BTreeMap<String, Vec<String>>) -> Result<Contract, Failure> {
+    let of = |slots| contracts.contract(kind, &slots).map_err(|error| Failure::new(format!("{kind}: {error}")));
+    let mut widest = of(Slots::new())?;
+    let choices =
+        widest.slots.clone().into_iter().flat_map(|slot| fillings[&slot].iter().map(move |filling| (slot.clone(), filling.clone())));
+    for choice in choices {
+        // Fillings that do not go together are `check`'s to refuse.
+        let Ok(contract) = of(Slots::from([choice])) else { continue };
+        for port in contract.ports {
+            if !widest.ports.iter().any(|known| known.name == port.name) {
+                widest.ports.push(port);
+            }
+        }
+        for param in contract.params {
+            if !widest.params.iter().any(|known| known.name == param.name) {
+                widest.params.push(param);
+            }
+        }
+        for slot in contract.slots {
+            if !widest.slots.contains(&slot) {
+                widest.slots.push(slot);
+            }
+        }
+    }
+    Ok(widest)
 }
 
 fn pass(contract: &Contract, fillings: &BTreeMap<String, Vec<String>>, kind: Option<&str>) -> Json {

@@ -70,7 +70,7 @@ pub fn measure<E: From<Error>>(context: &Context, rounds: u32, load: impl Fn() -
                 Ok(())
             }),
         ),
-        ("upload", Box::new(|| Ok(drop(globals()?)))),
+        ("upload", Box::new(|| globals().map(drop).map_err(E::from))),
     ];
     let (names, mut contestants): (Vec<_>, Vec<_>) = contestants.drain(..).unzip();
     let seconds = turns(rounds, &mut contestants)?;

@@ -121,8 +121,8 @@ impl<'a> Bench<'a> {
         let fixed: Vec<bool> = (0..frame_ms.len()).map(|graph| !self.is_flexible(graph)).collect();
         let budgets = budgets(frame_ms, &fixed, self.budget_ms);
         let mut cells = Vec::new();
-        for graph in 0..frame_ms.len() {
-            if fixed[graph] {
+        for (graph, &fixed) in fixed.iter().enumerate() {
+            if fixed {
                 cells.push(as_written(graph));
                 continue;
             }

@@ -158,7 +158,7 @@ fn averages(rng: &mut SplitMix, correlation: f64, count: usize) -> Vec<Film> {
 
 fn smear(film: &Film) -> Film {
     let width = SIZE[0] as usize;
-    let left = |i: usize| if i % width > 0 { i - 1 } else { i + width - 1 };
+    let left = |i: usize| if i.is_multiple_of(width) { i + width - 1 } else { i - 1 };
     let color = (0..PIXELS).map(|i| [0, 1, 2].map(|c| 0.5 * (film.color[i][c] + film.color[left(i)][c]))).collect();
     Film::new(SIZE, color).unwrap()
 }
