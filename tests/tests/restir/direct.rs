@@ -56,7 +56,7 @@ fn pairwise_reuse_agrees_with_the_path_tracer() {
 fn reuse_agrees_where_camera_objects_and_lights_move() {
     let Some(context) = context() else { return };
     let view = View { time: 0.3, step: 0.05, ..View::default() };
-    let found = compare(&context, &scene("animated"), &Changes { view, rule: "pairwise", shaders: &[] }, &coarse(), 192);
+    let found = compare(&context, &scene("animated"), &Changes { view, rule: "pairwise", shaders: &[] }, &coarse(), 288);
     assert_eq!(found.verdict, Verdict::Passed, "{found}");
 }
 
