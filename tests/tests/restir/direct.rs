@@ -28,9 +28,7 @@ pub const FRAME: u32 = 8;
 pub fn compare(context: &Context, scene: &Arc<Scene>, changes: &Changes<'_>, test: &BlockTest, seeds: u64) -> BlockComparison {
     let Changes { view, rule, shaders } = changes;
     let moment = View { time: view.time_at(FRAME), step: 0.0, ..view.clone() };
-    // As many paths as the test needs.
-    let frames = if *test == fine() { 192 } else { 48 };
-    let reference = path_traced(context, scene, "direct", frames, moment);
+    let reference = path_traced(context, scene, "direct", 192, moment);
     let rule = format!("slots.mis={rule}");
     let settings = [NEAR[0], NEAR[1], &rule];
     let graph = "extends = 'restir_di_unbiased.toml'";
@@ -56,7 +54,7 @@ fn pairwise_reuse_agrees_with_the_path_tracer() {
 fn reuse_agrees_where_camera_objects_and_lights_move() {
     let Some(context) = context() else { return };
     let view = View { time: 0.3, step: 0.05, ..View::default() };
-    let found = compare(&context, &scene("animated"), &Changes { view, rule: "pairwise", shaders: &[] }, &coarse(), 288);
+    let found = compare(&context, &scene("animated"), &Changes { view, rule: "pairwise", shaders: &[] }, &coarse(), 192);
     assert_eq!(found.verdict, Verdict::Passed, "{found}");
 }
 

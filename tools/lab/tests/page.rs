@@ -26,10 +26,13 @@ fn color(browser: &mut Browser, [x, y]: [f64; 2]) -> [u8; 3] {
     [0, 1, 2].map(|c| value[c].as_u64().expect("a byte") as u8)
 }
 
-/// A point of the first viewer's stage in the window.
+/// A point of the first viewer's stage in the window, after the stage has been laid out anew.
 fn place(browser: &mut Browser, [x, y]: [f64; 2]) -> [f64; 2] {
     let point = browser.evaluate(&format!(
-        "(() => {{ const b = {STAGE}.getBoundingClientRect(); return [b.left + {x} * b.width, b.top + {y} * b.height]; }})()"
+        "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {{
+            const b = {STAGE}.getBoundingClientRect();
+            done([b.left + {x} * b.width, b.top + {y} * b.height]);
+        }})))"
     ));
     [0, 1].map(|c| point[c].as_f64().expect("a number"))
 }
