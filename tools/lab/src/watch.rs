@@ -1,7 +1,7 @@
 //! Tells when the files of an experiment change.
 //!
 //! Editors write a new file and rename it over the old one, in several steps: folders are watched rather than files, and changes count once they
-//! have been quiet for [`QUIET`].
+//! have been quiet for `QUIET`.
 
 use notify::{RecommendedWatcher, RecursiveMode};
 use notify_debouncer_full::{DebounceEventResult, Debouncer, RecommendedCache, new_debouncer};
