@@ -9,7 +9,7 @@ pub struct Camera {
     pub to_world: Affine3A,
     /// Full vertical field of view, radians.
     pub vertical_fov: f32,
-    /// Near plane in metres, used by the rasteriser only.
+    /// Near plane in metres, as the file has it: no pass cuts anything off there.
     pub near: f32,
 }
 

@@ -1,6 +1,6 @@
 //! Modules by path.
 
-use crate::ShaderError;
+use crate::{ShaderError, comments::Comments};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
@@ -68,6 +68,11 @@ impl Library {
     /// The text of one module.
     pub fn text(&self, path: &str) -> Option<&str> {
         self.modules.get(path).map(|module| module.text.as_str())
+    }
+
+    /// The manual page of one module: the `//!` text at its head, without tags.
+    pub fn manual(&self, path: &str) -> Option<String> {
+        Some(Comments::read(self.text(path)?).manual)
     }
 
     /// Every slot that some module imports, with the modules of its folder: what can fill it.

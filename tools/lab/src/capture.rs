@@ -4,7 +4,7 @@
 //! its sum of squares by a pass whose output has elements called [`MOMENTS`]. Both are found in the graph, not assumed.
 
 use crate::film::{Film, FilmError};
-use aquifer_graph::{Graph, Plan, PortId, Value, When};
+use aquifer_graph::{Graph, Plan, PortId, Value, When, WireType};
 use aquifer_render::Renderer;
 use std::collections::VecDeque;
 
@@ -28,7 +28,7 @@ pub enum CaptureError {
         /// What it holds.
         element: String,
     },
-    /// The resource of running means lacks a member.
+    /// The elements of a resource lack a member.
     #[error("`{name}` has no member `{member}`")]
     NoMember {
         /// The resource.
@@ -136,7 +136,7 @@ fn three(words: &[f32], at: usize) -> [f32; 3] {
 }
 
 /// Nodes from the output upwards, the nearest first.
-fn upstream(graph: &Graph) -> Vec<usize> {
+pub(crate) fn upstream(graph: &Graph) -> Vec<usize> {
     let mut found = vec![graph.output().node];
     let mut next = VecDeque::from(found.clone());
     while let Some(node) = next.pop_front() {
@@ -189,18 +189,30 @@ struct Members {
 
 impl Members {
     fn of(plan: &Plan, name: &str) -> Result<Self, CaptureError> {
+        let record = Record::of(plan, name);
+        Ok(Self { mean: record.place("mean")?, count: record.place("count")?, squares: record.place("squares")?, stride: record.stride() })
+    }
+}
+
+/// The elements of a kept resource. Places are in units of 4 bytes.
+pub(crate) struct Record<'a> {
+    name: &'a str,
+    ty: Option<&'a WireType>,
+}
+
+impl<'a> Record<'a> {
+    pub fn of(plan: &'a Plan, name: &'a str) -> Self {
         let kept = plan.kept.iter().find(|kept| kept.name == name).and_then(|kept| kept.resource);
-        let ty = kept.map(|half| &plan.resources[half.resource].ty);
-        let place = |member| {
-            let offset = ty.and_then(|ty| offset(&ty.layout, member));
-            offset.map(|bytes| bytes / size_of::<f32>()).ok_or_else(|| CaptureError::NoMember { name: name.to_owned(), member })
-        };
-        Ok(Self {
-            mean: place("mean")?,
-            count: place("count")?,
-            squares: place("squares")?,
-            stride: ty.map_or(1, |ty| ty.stride as usize / size_of::<f32>()),
-        })
+        Self { name, ty: kept.map(|half| &plan.resources[half.resource].ty) }
+    }
+
+    pub fn place(&self, member: &'static str) -> Result<usize, CaptureError> {
+        let offset = self.ty.and_then(|ty| offset(&ty.layout, member));
+        offset.map(|bytes| bytes / size_of::<f32>()).ok_or_else(|| CaptureError::NoMember { name: self.name.to_owned(), member })
+    }
+
+    pub fn stride(&self) -> usize {
+        self.ty.map_or(1, |ty| ty.stride as usize / size_of::<f32>())
     }
 }
 

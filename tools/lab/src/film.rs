@@ -24,11 +24,11 @@ pub struct Film {
     pub color: Vec<[f32; 3]>,
     /// Variance of the mean held in `color`, i.e. its squared standard error.
     pub variance: Option<Vec<[f32; 3]>>,
-    /// Base colour of the first surface, linear.
+    /// Base colour of the first surface, linear; black where there is none. For renders, this and the next two are the last frame's.
     pub albedo: Option<Vec<[f32; 3]>>,
-    /// World-space unit normal of the first surface.
+    /// World-space unit normal of the first surface; zeros where there is none.
     pub normal: Option<Vec<[f32; 3]>>,
-    /// Distance along the view axis to the first surface, metres.
+    /// Distance along the view axis to the first surface, metres; infinite where there is none.
     pub depth: Option<Vec<f32>>,
     /// What made it; `None` for images of other programs.
     pub facts: Option<Facts>,

@@ -10,6 +10,7 @@ pub mod bench;
 pub mod capture;
 pub mod compare;
 pub mod film;
+pub mod first_surface;
 pub mod metrics;
 pub mod page;
 pub mod rays;

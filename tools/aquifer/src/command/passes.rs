@@ -1,5 +1,7 @@
 //! `aquifer passes [NAME]`
 
+mod book;
+
 use crate::{failure::Failure, source::ShaderArgs, ui::Ui};
 use aquifer_graph::{Contract, ContractError, Contracts, Direction, Extent, Param, Port, Slots, Value, nearest};
 use aquifer_render::Registry;
@@ -10,6 +12,9 @@ pub struct Args {
     name: Option<String>,
     #[command(flatten)]
     shaders: ShaderArgs,
+    /// Print all manual pages as one Markdown page
+    #[arg(long, conflicts_with = "name")]
+    markdown: bool,
     /// Print ports and parameters as JSON
     #[arg(long, requires = "name")]
     json: bool,
@@ -17,13 +22,22 @@ pub struct Args {
 
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let registry = args.shaders.registry(None)?;
-    let slots = registry.library().default_slots();
+    let slots = fillings(&registry);
+    if args.markdown {
+        return ui.print(&book::book(&registry, &slots)?);
+    }
     let Some(name) = args.name else { return ui.print(&list(&registry, &slots)) };
     let known = registry.known(&name, &slots).map_err(|error| refused(&name, error))?;
     if args.json {
         return ui.json(&known.contract);
     }
     ui.print(&page(&name, &known.composed.interface.manual, &known.contract))
+}
+
+/// What fills each slot when nothing is said; where nothing does, the first that could.
+fn fillings(registry: &Registry) -> Slots {
+    let known = registry.slots().into_iter().filter_map(|(slot, fillings)| Some((slot, fillings.into_iter().next()?)));
+    known.chain(registry.library().default_slots()).collect()
 }
 
 fn refused(name: &str, error: ContractError) -> Failure {
@@ -65,27 +79,28 @@ fn page(name: &str, manual: &str, contract: &Contract) -> String {
 }
 
 fn port(port: &Port) -> String {
-    let way = match port.direction {
+    format!("  {} ({}): {}, {}{}", port.name, way(port), port.ty.element, extent(&port.ty.extent), doc(&port.doc))
+}
+
+fn way(port: &Port) -> &'static str {
+    match port.direction {
         Direction::In if port.optional => "in, optional",
         Direction::In => "in",
         Direction::Out => "out",
         Direction::InOut => "in and out",
-    };
-    let extent = match port.ty.extent {
+    }
+}
+
+fn extent(extent: &Extent) -> String {
+    match extent {
         Extent::Pixels => "one a pixel".to_owned(),
         Extent::Tiles(w, h) => format!("one a tile of {w}×{h} pixels"),
         Extent::Fixed(n) => format!("{n} in all"),
-    };
-    format!("  {} ({way}): {}, {extent}{}", port.name, port.ty.element, doc(&port.doc))
+    }
 }
 
 fn param(param: &Param) -> String {
-    let mut facts = vec![match param.default {
-        Value::U32(n) => param.choices.get(n as usize).map_or_else(|| n.to_string(), |choice| format!("\"{choice}\"")),
-        Value::Bool(value) => value.to_string(),
-        Value::I32(value) => value.to_string(),
-        Value::F32(value) => format!("{value:?}"),
-    }];
+    let mut facts = vec![default_of(param)];
     facts.extend(param.range.map(|(low, high)| format!("{low} to {high}")));
     if !param.choices.is_empty() {
         facts.push(format!("one of {}", param.choices.join(", ")));
@@ -94,6 +109,16 @@ fn param(param: &Param) -> String {
         facts.push("live".to_owned());
     }
     format!("  {} = {}{}", param.name, facts.join(", "), doc(&param.doc))
+}
+
+/// The default as a graph file writes it.
+fn default_of(param: &Param) -> String {
+    match param.default {
+        Value::U32(n) => param.choices.get(n as usize).map_or_else(|| n.to_string(), |choice| format!("\"{choice}\"")),
+        Value::Bool(value) => value.to_string(),
+        Value::I32(value) => value.to_string(),
+        Value::F32(value) => format!("{value:?}"),
+    }
 }
 
 fn doc(text: &str) -> String {

@@ -66,6 +66,13 @@ fn passes_are_listed_and_explained() {
 }
 
 #[test]
+fn the_page_of_all_passes_is_current() {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/passes.md")).expect("the page");
+    let made = aquifer(&["passes", "--markdown"]).succeeds().out;
+    assert!(page == made, "docs/passes.md is not what the shaders say: aquifer passes --markdown > docs/passes.md");
+}
+
+#[test]
 fn a_folder_of_shaders_adds_passes() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::create_dir(folder.path().join("pass")).expect("a folder");

@@ -43,11 +43,32 @@ fn a_picture_its_numbers_and_what_made_it() {
     let film = Film::read(&exr).expect("it was written");
     assert!(film.color.iter().flatten().all(|x| x.is_finite()) && film.color.iter().flatten().any(|&x| x > 0.0));
     assert!(film.variance.as_ref().is_some_and(|v| v.iter().flatten().any(|&x| x > 0.0)));
+    assert_first_surfaces(&film);
     let facts = film.facts.expect("it says what made it");
     assert_eq!((facts.samples_per_pixel, facts.transport.as_str(), facts.camera.as_str()), (8, "full:2", "main"));
     assert!(facts.graph.text.contains("path_tracer.toml"));
     assert_eq!(Film::read(&png).expect("it was written").size, [16, 9]);
     assert_eq!(names(folder.path()), ["a.exr", "a.png"]);
+}
+
+/// Asserts that a render of cornell carries what its pixels see: a material of the scene, a unit normal, a depth; or nothing.
+fn assert_first_surfaces(film: &Film) {
+    let [albedo, normal] = [&film.albedo, &film.normal].map(|plane| plane.as_ref().expect("the graph has a g-buffer"));
+    let depth = film.depth.as_ref().expect("the graph has a g-buffer");
+    let scene = aquifer_scenes::by_name("cornell").map(|generator| (generator.make)()).expect("a scene");
+    let whites = scene.materials.iter().map(|material| material.base_color.truncate());
+    let whites: Vec<[f32; 3]> = whites.map(Into::into).collect();
+    for (pixel, depth) in depth.iter().enumerate() {
+        let near = |a: [f32; 3], b: &[f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3);
+        if depth.is_infinite() {
+            assert!(albedo[pixel] == [0.0; 3] && normal[pixel] == [0.0; 3]);
+            continue;
+        }
+        assert!(whites.iter().any(|white| near(albedo[pixel], white)), "no material is {:?}", albedo[pixel]);
+        let length = normal[pixel].iter().map(|x| x * x).sum::<f32>();
+        assert!((length - 1.0).abs() < 1e-3 && *depth > 0.0, "{:?}, {depth} m", normal[pixel]);
+    }
+    assert!(depth.iter().filter(|depth| depth.is_finite()).count() > depth.len() / 3, "few surfaces are seen");
 }
 
 #[test]

@@ -13,6 +13,7 @@ use aquifer_graph::{Graph, NeedsAll, Plan, Source};
 use aquifer_lab::{
     capture::Capture,
     film::{Facts, Film, Format, GraphText, Runs},
+    first_surface::FirstSurface,
     rays::RayCounters,
 };
 use aquifer_render::{Context, ContextOptions, Renderer, RendererOptions, SceneGlobals, View};
@@ -29,9 +30,15 @@ pub struct Job<'a> {
     scene: Arc<Scene>,
     view: View,
     graph: Graph,
-    capture: Capture,
-    rays: RayCounters,
+    taken: Taken,
     renderer: Renderer,
+}
+
+/// What is taken off a graph.
+struct Taken {
+    capture: Capture,
+    surface: FirstSurface,
+    rays: RayCounters,
 }
 
 impl<'a> Job<'a> {
@@ -49,21 +56,21 @@ impl<'a> Job<'a> {
         if !edits.is_empty() {
             (graph, registry) = args.graph.check_with(Some(&scene), edits)?;
         }
-        let (capture, rays, plan) = planned(&graph)?;
+        let (taken, plan) = planned(&graph)?;
         let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
         let view = View { camera: args.camera.clone(), ..view };
         let globals = SceneGlobals::new(&context, scene.clone(), view.clone())?;
         let options = RendererOptions { size: args.size, seed: args.seed, first_frame, ..RendererOptions::default() };
         let renderer = Renderer::new(&context, &registry, plan, Box::new(globals), options)?;
-        Ok(Self { args, scene, view, graph, capture, rays, renderer })
+        Ok(Self { args, scene, view, graph, taken, renderer })
     }
 
     /// Reads graph and shaders anew. When something is wrong with them, everything stays as it was.
     pub fn reload(&mut self) -> Result<(), Failure> {
         let (graph, registry) = self.args.graph.check(Some(&self.scene))?;
-        let (capture, rays, plan) = planned(&graph)?;
+        let (taken, plan) = planned(&graph)?;
         self.renderer.replace_plan(&registry, plan)?;
-        (self.graph, self.capture, self.rays) = (graph, capture, rays);
+        (self.graph, self.taken) = (graph, taken);
         Ok(())
     }
 
@@ -115,20 +122,23 @@ impl<'a> Job<'a> {
     pub fn write(&mut self, paths: &[PathBuf], spent: State, began: Instant) -> Result<Summary, Failure> {
         let facts = self.facts(spent)?;
         let set_up = began.elapsed().saturating_sub(Duration::from_secs_f64(spent.seconds));
-        let film = Film { facts: Some(facts), ..self.capture.radiance(&mut self.renderer)? };
+        let camera = self.scene.at(facts.animation_time, self.view.camera.as_deref())?.camera;
+        let Taken { capture, surface, rays } = &self.taken;
+        let film = Film { facts: Some(facts), ..capture.radiance(&mut self.renderer)? };
+        let film = surface.add_to(film, &mut self.renderer, &camera)?;
         for path in paths {
             match Format::of(path)? {
                 Format::Exr => film.write(path)?,
-                Format::Png => self.capture.display(&mut self.renderer)?.write(path)?,
+                Format::Png => capture.display(&mut self.renderer)?.write(path)?,
             }
         }
-        let rays = self.rays.read(&mut self.renderer)?;
+        let rays = rays.read(&mut self.renderer)?;
         Ok(Summary::new(&self.graph, &film, &self.renderer, rays, spent.frames, set_up, paths))
     }
 
     fn facts(&self, spent: State) -> Result<Facts, Failure> {
         // Without a mean over frames, the film is that of the last one.
-        let frames = if self.capture.averages() { spent.frames } else { 1 };
+        let frames = if self.taken.capture.averages() { spent.frames } else { 1 };
         let next = self.renderer.next_frame();
         let camera = self.view.camera.clone().or_else(|| self.scene.camera_names().into_iter().next()).unwrap_or_default();
         Ok(Facts {
@@ -148,9 +158,9 @@ impl<'a> Job<'a> {
 }
 
 /// What is taken off a graph, and the plan that keeps it.
-fn planned(graph: &Graph) -> Result<(Capture, RayCounters, Plan), Failure> {
-    let (capture, rays) = (Capture::of(graph), RayCounters::of(graph));
-    let keep: Vec<&str> = capture.keep().into_iter().chain(rays.keep()).collect();
+fn planned(graph: &Graph) -> Result<(Taken, Plan), Failure> {
+    let taken = Taken { capture: Capture::of(graph), surface: FirstSurface::of(graph), rays: RayCounters::of(graph) };
+    let keep: Vec<&str> = taken.capture.keep().into_iter().chain(taken.surface.keep()).chain(taken.rays.keep()).collect();
     let plan = graph.plan(&NeedsAll, &keep)?;
-    Ok((capture, rays, plan))
+    Ok((taken, plan))
 }
