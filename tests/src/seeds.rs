@@ -80,14 +80,14 @@ pub fn add_seeds(renderer: &mut Renderer, frame: u32, seeds: Range<u64>, moments
     }
 }
 
-/// Block means of [`path_traced_film`].
+/// Block means of the path tracer's image of light of one transport.
 pub fn path_traced(context: &Context, scene: &Arc<Scene>, transport: &str, frames: u32, view: View) -> Blocks {
-    Blocks::of_film(&path_traced_film(context, scene, transport, frames, view), SIDE, Quantity::Luminance)
+    let graph = format!("extends = 'path_tracer.toml'\ntransport = '{transport}'");
+    Blocks::of_film(&path_traced_film(context, scene, &graph, frames, view), SIDE, Quantity::Luminance)
 }
 
-/// The path tracer's image, 64×36, from `frames` frames of eight paths.
-pub fn path_traced_film(context: &Context, scene: &Arc<Scene>, transport: &str, frames: u32, view: View) -> Film {
-    let graph = format!("extends = 'path_tracer.toml'\ntransport = '{transport}'");
-    let parts = Parts { settings: &["path_tracer.samples=8"], seed: 1 << 40, view, ..Parts::new(scene, &graph) };
+/// The image of a graph with a path tracer, 64×36, from `frames` frames of eight paths.
+pub fn path_traced_film(context: &Context, scene: &Arc<Scene>, graph: &str, frames: u32, view: View) -> Film {
+    let parts = Parts { settings: &["path_tracer.samples=8"], seed: 1 << 40, view, ..Parts::new(scene, graph) };
     parts.film(context, frames)
 }

@@ -1,0 +1,295 @@
+//! Is unbiased reuse unbiased? One row for each scene, motion and rule: frame 8 over independent seeds against path tracing.
+//!
+//! ```text
+//! cargo run -p aquifer-tests --example unbiased_reuse -- di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE]
+//! ```
+//!
+//! FOLDER keeps references and what seeds have shown so far: a run that was stopped goes on where it was. Seeds are added to all rows in turn, twice as
+//! many each time, until a row is resolved or has failed, has its 4,000 seeds, or the time is over. Each part of a row is a process of its own: lavapipe
+//! keeps some memory of every dispatch for as long as a process lives.
+
+use aquifer_lab::{
+    film::Film,
+    stats::{
+        BlockTest, Blocks, Rule, Verdict,
+        blocks::{BlockMoments, Quantity},
+        compare_blocks,
+        difference::largest_error,
+    },
+};
+use aquifer_render::{Context, View};
+use aquifer_scene::{Channel, Interpolation, Scene, Track};
+use aquifer_tests::{
+    Parts, context,
+    evidence::{Evidence, told},
+    seeds::{SIDE, add_seeds, path_traced_film},
+};
+use glam::{Quat, Vec3};
+use serde_json::json;
+use std::{
+    fs,
+    path::Path,
+    process::{Command, ExitCode},
+    sync::Arc,
+    time::{Duration, Instant},
+};
+
+/// The frame that is compared; those before are its history.
+const FRAME: u32 = 8;
+const FEWEST_SEEDS: u64 = 32;
+const MOST_SEEDS: u64 = 4000;
+/// Seeds of one process.
+const PART: u64 = 256;
+/// Seconds a frame.
+const STEP: f32 = 1.0 / 30.0;
+/// Metres a second, of all that moves.
+const PACE: f32 = 0.5;
+
+/// What is shown of a kind of light.
+struct Subject {
+    name: &'static str,
+    graph: &'static str,
+    settings: &'static [&'static str],
+    scenes: &'static [Lit],
+    motions: [&'static str; 2],
+    rules: &'static [&'static str],
+    /// Of eight paths each.
+    reference_frames: u32,
+    test: fn() -> BlockTest,
+}
+
+/// A scene, the paths that count, what fills slots of both sides, and of ours.
+struct Lit {
+    scene: &'static str,
+    transport: &'static str,
+    slots: &'static str,
+    ours: &'static str,
+}
+
+const fn lit(scene: &'static str, transport: &'static str, slots: &'static str, ours: &'static str) -> Lit {
+    Lit { scene, transport, slots, ours }
+}
+
+/// Where a sun is among few lights, drawing them by power gives it nearly all samples, and what the lamps light is noise.
+const EVENLY: &str = "proposal = 'uniform'\n";
+/// Exact on glossy surfaces too.
+const EXACT: &str = "domain = 'gi_path'\n";
+
+const SUBJECTS: [Subject; 2] = [
+    Subject {
+        name: "di",
+        graph: "restir_di_unbiased",
+        settings: &["spatial.radius=4.0", "spatial.rows=0.0"],
+        scenes: &[
+            lit("cornell", "direct", "", ""),
+            lit("many_lights", "direct", "", ""),
+            lit("sun_room", "direct", EVENLY, ""),
+            lit("glossy", "direct", "", ""),
+        ],
+        motions: ["still", "all moves"],
+        rules: &["pairwise", "balance", "contribution"],
+        reference_frames: 512,
+        // 0.2 % of the whole, shown as equivalence; 1 % of every block that is resolved to 0.3 %.
+        test: || BlockTest {
+            overall_band: 0.002,
+            overall_error: largest_error(0.002),
+            block_band: 0.01,
+            block_error: 0.003,
+            ..equivalence()
+        },
+    },
+    Subject {
+        name: "gi",
+        graph: "restir_gi_unbiased",
+        settings: &["spatial.radius=4.0", "spatial.rows=0.0", "initial.candidates=8"],
+        scenes: &[
+            lit("cornell", "indirect:2", "", ""),
+            lit("glossy", "indirect:2", "", EXACT),
+            lit("door_ajar", "indirect:2", "", EXACT),
+            lit("sun_room", "indirect:2", EVENLY, EXACT),
+            lit("cornell", "indirect:3", "", ""),
+        ],
+        motions: ["still", "camera moves"],
+        rules: &["pairwise", "contribution"],
+        reference_frames: 1024,
+        // 0.5 % of the whole, shown as equivalence; 2 % of every block that is resolved to 0.7 %.
+        test: || BlockTest { overall_error: largest_error(0.005), ..equivalence() },
+    },
+];
+
+/// 80 % of the blocks must be resolved.
+fn equivalence() -> BlockTest {
+    BlockTest {
+        overall_rule: Rule::Equivalent { alpha: 0.05 },
+        block_rule: Rule::Exceeds { alpha: 0.05 },
+        resolved_share: 0.8,
+        ..BlockTest::default()
+    }
+}
+
+/// What a row is about.
+#[derive(Clone, Copy)]
+struct Case {
+    lit: &'static Lit,
+    motion: &'static str,
+    mis: &'static str,
+}
+
+impl Subject {
+    fn cases(&'static self) -> Vec<Case> {
+        let of = |lit| self.motions.iter().flat_map(move |motion| self.rules.iter().map(move |mis| Case { lit, motion, mis }));
+        self.scenes.iter().flat_map(of).collect()
+    }
+}
+
+/// How a process ends.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    /// Resolved, failed, or out of seeds.
+    Settled = 0,
+    /// It has the seeds that were asked for, and they do not resolve it.
+    Open = 10,
+    /// There are seeds to add.
+    More = 11,
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [subject, file, folder, commit, date, minutes, rest @ ..] = &arguments[..] else {
+        eprintln!("unbiased_reuse di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE]");
+        return ExitCode::from(2);
+    };
+    let Some(subject) = SUBJECTS.iter().find(|it| it.name == *subject) else {
+        eprintln!("unbiased_reuse: `{subject}` is neither di nor gi");
+        return ExitCode::from(2);
+    };
+    let minutes: f64 = minutes.parse().expect("MINUTES is a number");
+    let end = Instant::now() + Duration::from_secs_f64(60.0 * minutes);
+    if let [part, case, goal] = rest
+        && part == "part"
+    {
+        let Some(context) = context() else { return ExitCode::from(75) };
+        let case = subject.cases()[case.parse::<usize>().expect("a number of a case")];
+        let goal = goal.parse().expect("a number of seeds");
+        let measuring = Measuring { context: &context, subject, case, folder: Path::new(folder), end };
+        return ExitCode::from(measuring.part(goal, Evidence::open(file, commit, date, &context)) as u8);
+    }
+    fs::create_dir_all(folder).unwrap_or_else(|error| panic!("{folder}: {error}"));
+    let asked = |case: &Case| rest.is_empty() || rest.iter().any(|name| name == case.lit.scene);
+    let mut open: Vec<usize> = subject.cases().iter().enumerate().filter(|(_, case)| asked(case)).map(|(number, _)| number).collect();
+    let mut goal = FEWEST_SEEDS;
+    while !open.is_empty() && goal < 2 * MOST_SEEDS {
+        for case in std::mem::take(&mut open) {
+            let mut found = End::More;
+            while found == End::More && Instant::now() < end {
+                let left = (end - Instant::now()).as_secs_f64() / 60.0;
+                found = in_a_process(&arguments[..5], left, case, goal.min(MOST_SEEDS));
+            }
+            if found != End::Settled {
+                open.push(case);
+            }
+        }
+        goal *= 2;
+    }
+    ExitCode::SUCCESS
+}
+
+fn in_a_process(arguments: &[String], minutes: f64, case: usize, goal: u64) -> End {
+    let program = std::env::current_exe().expect("this program");
+    let rest = [format!("{minutes:.2}"), "part".into(), case.to_string(), goal.to_string()];
+    let status = Command::new(program).args(arguments).args(rest).status().expect("this program runs");
+    let ends = [End::Settled, End::Open, End::More];
+    ends.into_iter().find(|end| status.code() == Some(*end as i32)).unwrap_or_else(|| panic!("a part of case {case} ended with {status}"))
+}
+
+struct Measuring<'a> {
+    context: &'a Context,
+    subject: &'static Subject,
+    case: Case,
+    folder: &'a Path,
+    end: Instant,
+}
+
+impl Measuring<'_> {
+    /// Adds seeds, at most up to `goal`, and writes what all of them show.
+    fn part(&self, goal: u64, mut evidence: Evidence) -> End {
+        let Case { lit, motion, mis } = self.case;
+        let scene = made(lit.scene, motion);
+        let moving = View { step: STEP, ..View::default() };
+        let name = format!("{}-{}-{}-{motion}", self.subject.name, lit.scene, lit.transport).replace([' ', ':'], "_");
+        let kept = self.folder.join(format!("{name}-{mis}.json"));
+        let read = || serde_json::from_str::<BlockMoments>(&fs::read_to_string(&kept).ok()?).ok();
+        let mut moments = read().unwrap_or_else(|| BlockMoments::new([64, 36], SIDE, Quantity::Luminance));
+        let reference = self.reference(&scene, &moving, &self.folder.join(format!("{name}.exr")));
+        let judged =
+            |moments: &BlockMoments| compare_blocks(&moments.blocks(), &reference, &(self.subject.test)()).expect("grids of one size");
+        let settled = |moments: &BlockMoments| {
+            moments.count() >= MOST_SEEDS || (moments.count() >= FEWEST_SEEDS && judged(moments).verdict != Verdict::NotResolved)
+        };
+        let most = goal.min(moments.count() + PART);
+        let graph = format!(
+            "extends = '{}.toml'\ntransport = '{}'\n[slots]\nmis = '{mis}'\n{}{}",
+            self.subject.graph, lit.transport, lit.slots, lit.ours
+        );
+        let parts = Parts { settings: self.subject.settings, keep: &["shade.color"], view: moving, ..Parts::new(&scene, &graph) };
+        let mut renderer = parts.renderer(self.context);
+        while moments.count() < most && Instant::now() < self.end && !settled(&moments) {
+            let from = moments.count();
+            add_seeds(&mut renderer, FRAME, from..most.min(from + FEWEST_SEEDS), &mut moments);
+            let text = serde_json::to_string(&moments).expect("plain data");
+            fs::write(&kept, text).unwrap_or_else(|error| panic!("{}: {error}", kept.display()));
+        }
+        if moments.count() > 0 {
+            let found = judged(&moments);
+            eprintln!("{}, {}, {motion}, {mis}, {} seeds: {found}", lit.scene, lit.transport, moments.count());
+            let key = json!({ "scene": lit.scene, "transport": lit.transport, "motion": motion, "mis": mis });
+            let mut row = told(&found);
+            row["seeds"] = json!(moments.count());
+            row["frame"] = json!(FRAME);
+            evidence.put(key, row);
+        }
+        if settled(&moments) {
+            End::Settled
+        } else if moments.count() >= goal {
+            End::Open
+        } else {
+            End::More
+        }
+    }
+
+    /// At the moment of the frame that is compared.
+    fn reference(&self, scene: &Arc<Scene>, moving: &View, path: &Path) -> Blocks {
+        let film = Film::read(path).unwrap_or_else(|_| {
+            let held = View { time: moving.time_at(FRAME), ..View::default() };
+            let graph =
+                format!("extends = 'path_tracer.toml'\ntransport = '{}'\n[slots]\n{}", self.case.lit.transport, self.case.lit.slots);
+            let film = path_traced_film(self.context, scene, &graph, self.subject.reference_frames, held);
+            film.write(path).unwrap_or_else(|error| panic!("{error}"));
+            film
+        });
+        Blocks::of_film(&film, SIDE, Quantity::Luminance)
+    }
+}
+
+/// A scene whose cameras glide; with "all moves" lamps and every other mesh too, and the sun turns.
+fn made(name: &str, motion: &str) -> Arc<Scene> {
+    let mut scene = (aquifer_scenes::by_name(name).expect("a built-in scene").make)();
+    for node in 0..scene.nodes.len() {
+        let it = &scene.nodes[node];
+        let emits =
+            it.mesh.is_some_and(|mesh| scene.meshes[mesh as usize].materials.iter().any(|&id| scene.materials[id as usize].emits()));
+        let thing = it.light.is_some() || emits || (it.mesh.is_some() && node % 2 == 1);
+        if motion == "still" || !(it.camera.is_some() || (motion == "all moves" && thing)) {
+            continue;
+        }
+        let way = Quat::from_rotation_y(node as f32) * Vec3::X * PACE;
+        let (place, turn) = (it.translation, it.rotation);
+        let tracks = [
+            Some(Track::Translation(vec![place, place + way])),
+            it.light.map(|_| Track::Rotation(vec![turn, Quat::from_rotation_y(0.2) * turn])),
+        ];
+        let channel = |track| Channel { node: node as u32, track, times: vec![0.0, 1.0], interpolation: Interpolation::Linear };
+        scene.animation.extend(tracks.into_iter().flatten().map(channel));
+    }
+    Arc::new(scene.finish().unwrap_or_else(|error| panic!("{name}: {error}")))
+}

@@ -1,0 +1,57 @@
+//! Evidence files: rows of JSON, each with the commit, the adapter and the date it was made with.
+
+use aquifer_lab::stats::blocks::BlockComparison;
+use aquifer_render::Context;
+use serde_json::{Map, Value, json};
+use std::{fs, path::PathBuf};
+
+/// A file of rows, written anew after each.
+pub struct Evidence {
+    path: PathBuf,
+    about: Map<String, Value>,
+    rows: Vec<Value>,
+}
+
+impl Evidence {
+    /// The rows that the file holds already, if it is there. New ones are of this commit and date, and of the context's adapter.
+    pub fn open(path: &str, commit: &str, date: &str, context: &Context) -> Self {
+        let old = fs::read_to_string(path).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
+        let rows = old.map_or_else(Vec::new, |file| file["rows"].as_array().cloned().unwrap_or_default());
+        let about = object(json!({ "commit": commit, "adapter": context.adapter().name, "date": date }));
+        Evidence { path: path.into(), about, rows }
+    }
+
+    /// Writes a row: `key` says what it is of, `found` what was found. It takes the place of an older one of the same key.
+    ///
+    /// # Panics
+    /// When the file cannot be written, or `key` or `found` is no object.
+    pub fn put(&mut self, key: Value, found: Value) {
+        let key = object(key);
+        let same = |row: &Value| key.iter().all(|(name, value)| row[name] == *value);
+        let place = self.rows.iter().position(same);
+        let row = Value::Object(key.into_iter().chain(object(found)).chain(self.about.clone()).collect());
+        match place {
+            Some(at) => self.rows[at] = row,
+            None => self.rows.push(row),
+        }
+        let text = serde_json::to_string_pretty(&json!({ "rows": self.rows })).expect("plain data");
+        fs::write(&self.path, text + "\n").unwrap_or_else(|error| panic!("{}: {error}", self.path.display()));
+    }
+}
+
+fn object(value: Value) -> Map<String, Value> {
+    let Value::Object(map) = value else { panic!("not an object: {value}") };
+    map
+}
+
+/// What a row says of a comparison by blocks.
+pub fn told(found: &BlockComparison) -> Value {
+    let plane = &found.planes[0];
+    let percent = |share: f64| (share * 1e5).round() / 1e3;
+    let largest = plane.resolved.iter().map(|block| block.difference.value.abs()).reduce(f64::max);
+    json!({
+        "mean difference %": percent(plane.overall.value), "standard error %": percent(plane.overall.standard_error),
+        "lit blocks": plane.lit, "resolved blocks": plane.resolved.len(), "largest block difference %": largest.map(percent),
+        "verdict": found.verdict.to_string(),
+    })
+}
