@@ -4,15 +4,18 @@
 #     tools/evidence.sh external [--size 64x36|256x144] [--minutes N] [SCENE:TRANSPORT …]
 #     tools/evidence.sh held_out [SCENE …]
 #     tools/evidence.sh restir_di [MINUTES] [SCENE …]
-#     tools/evidence.sh restir_di_cost
 #     tools/evidence.sh restir_gi [MINUTES] [SCENE …]
+#     tools/evidence.sh restir_di_cost
+#     tools/evidence.sh restir_gi_cost
+#     tools/evidence.sh light_change
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
 # Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over. A row wants some 10⁹ rays.
-# restir_di_cost: passes of ReSTIR DI over light counts, with the machine to itself.
+# restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
+# light_change: error of ReSTIR GI by frame around a jump of the sun.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -33,11 +36,15 @@ restir_di | restir_gi)
     cargo run --quiet -p aquifer-tests --example unbiased_reuse -- "${item#restir_}" "docs/evidence/$item.json" "out/evidence/$item" \
         "$(git rev-parse HEAD)" "$(date -u +%F)" "$minutes" "$@"
     ;;
-restir_di_cost)
-    cargo run --quiet -p aquifer-tests --example restir_di_cost -- docs/evidence/restir_di_cost.json "$(git rev-parse HEAD)" "$(date +%F)"
+restir_di_cost | restir_gi_cost)
+    subject=${item#restir_}
+    cargo run --quiet -p aquifer-tests --example restir_cost -- "${subject%_cost}" "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)"
+    ;;
+light_change)
+    cargo run --quiet -p aquifer-tests --example light_change -- docs/evidence/light_change.json "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
 *)
-    echo "evidence: no item \`$item\`; there are: external, held_out, restir_di, restir_di_cost, restir_gi" >&2
+    echo "evidence: no item \`$item\`; there are: external, held_out, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change" >&2
     exit 2
     ;;
 esac

@@ -1,5 +1,6 @@
 //! The test harness: an adapter shared by all tests of a binary, and rigs that run graphs with kernels written in a test.
 
+pub mod cost;
 pub mod evidence;
 pub mod references;
 pub mod seeds;
