@@ -8,6 +8,7 @@
 #     tools/evidence.sh restir_di_cost
 #     tools/evidence.sh restir_gi_cost
 #     tools/evidence.sh light_change
+#     tools/evidence.sh error_parts [SCENE …]
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
@@ -15,7 +16,7 @@
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over. A row wants some 10⁹ rays.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
-# light_change: error of ReSTIR GI by frame around a jump of the sun.
+# light_change: error of ReSTIR GI by frame around a jump of the sun. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -40,11 +41,11 @@ restir_di_cost | restir_gi_cost)
     subject=${item#restir_}
     cargo run --quiet -p aquifer-tests --example restir_cost -- "${subject%_cost}" "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
-light_change)
-    cargo run --quiet -p aquifer-tests --example light_change -- docs/evidence/light_change.json "$(git rev-parse HEAD)" "$(date -u +%F)"
+light_change | error_parts)
+    cargo run --quiet -p aquifer-tests --example "$item" -- "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
 *)
-    echo "evidence: no item \`$item\`; there are: external, held_out, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change" >&2
+    echo "evidence: no item \`$item\`; there are: external, held_out, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change, error_parts" >&2
     exit 2
     ;;
 esac

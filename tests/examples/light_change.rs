@@ -11,7 +11,11 @@
 use aquifer_lab::{film::Film, stats::error::mse};
 use aquifer_render::{Context, View};
 use aquifer_scene::{Channel, Interpolation, Scene, Track};
-use aquifer_tests::{Parts, context, evidence::Evidence, seeds::path_traced_film};
+use aquifer_tests::{
+    Parts, context,
+    evidence::Evidence,
+    seeds::{film_of, path_traced_film},
+};
 use glam::{Quat, Vec3};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -37,7 +41,7 @@ fn main() {
     let Some(context) = context() else { std::process::exit(75) };
     let mut evidence = Evidence::open(file, commit, date, &context);
     let scene = jumping();
-    let held = View { time: (JUMP + AFTER) as f32 * STEP, ..View::default() };
+    let held = View { time: (JUMP + AFTER) as f32 * STEP, centred: true, ..View::default() };
     let path_tracer = "extends = 'path_tracer.toml'\ntransport = 'indirect:2'";
     let reference = path_traced_film(&context, &scene, path_tracer, REFERENCE_FRAMES, held);
     let traces = GRAPHS.map(|graph| trace(&context, &scene, graph, &reference));
@@ -58,7 +62,7 @@ fn main() {
 /// Frame 0 of the result is the one of the jump.
 fn trace(context: &Context, scene: &Arc<Scene>, graph: &str, reference: &Film) -> Vec<f64> {
     let graph = format!("extends = '{graph}.toml'\ntransport = 'indirect:2'");
-    let view = View { step: STEP, ..View::default() };
+    let view = View { step: STEP, centred: true, ..View::default() };
     let mut renderer = Parts { keep: &["shade.color"], view, ..Parts::new(scene, &graph) }.renderer(context);
     let mut errors = vec![Vec::new(); AFTER as usize + 1];
     for seed in 0..SEEDS {
@@ -66,9 +70,7 @@ fn trace(context: &Context, scene: &Arc<Scene>, graph: &str, reference: &Film) -
         for frame in 0..=JUMP + AFTER {
             renderer.frame().unwrap_or_else(|error| panic!("{error}"));
             let Some(after) = frame.checked_sub(JUMP) else { continue };
-            let words = renderer.read_f32("shade.color").unwrap_or_else(|error| panic!("{error}"));
-            let color = words.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-            let film = Film::new(renderer.options().size, color).expect("one colour a pixel");
+            let film = film_of(&mut renderer, "shade.color");
             errors[after as usize].push(mse(&film, reference).expect("films of one size").value());
         }
     }

@@ -72,12 +72,28 @@ impl Trial<'_> {
 /// When the device fails, or the sizes differ.
 pub fn add_seeds(renderer: &mut Renderer, frame: u32, seeds: Range<u64>, moments: &mut BlockMoments) {
     for seed in seeds {
-        renderer.reseed(seed).unwrap_or_else(|error| panic!("{error}"));
-        (0..=frame).for_each(|_| renderer.frame().unwrap_or_else(|error| panic!("{error}")));
-        let words = renderer.read_f32("shade.color").unwrap_or_else(|error| panic!("{error}"));
-        let color = words.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-        moments.push(&Film::new(renderer.options().size, color).expect("one colour a pixel")).expect("films of one size");
+        moments.push(&shaded(renderer, "shade.color", seed, frame)).expect("films of one size");
     }
+}
+
+/// What frame `frame` of this seed shows.
+///
+/// # Panics
+/// When the device fails, or there is no such port.
+pub fn shaded(renderer: &mut Renderer, port: &str, seed: u64, frame: u32) -> Film {
+    renderer.reseed(seed).unwrap_or_else(|error| panic!("{error}"));
+    (0..=frame).for_each(|_| renderer.frame().unwrap_or_else(|error| panic!("{error}")));
+    film_of(renderer, port)
+}
+
+/// What the last frame shows.
+///
+/// # Panics
+/// When the device fails, or there is no such port.
+pub fn film_of(renderer: &mut Renderer, port: &str) -> Film {
+    let words = renderer.read_f32(port).unwrap_or_else(|error| panic!("{error}"));
+    let color = words.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    Film::new(renderer.options().size, color).expect("one colour a pixel")
 }
 
 /// Block means of the path tracer's image of light of one transport.

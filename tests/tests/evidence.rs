@@ -67,3 +67,77 @@ fn the_table_of_held_out_scenes_is_its_evidence() {
         },
     );
 }
+
+/// Rows of unbiased reuse: those of one kind of light, as `| scene | … | verdict |`.
+fn told(row: &Value) -> String {
+    format!(
+        "| {} | {} | {} | {} | {} | {:+.3} % ± {:.3} % | {} of {} | {} | {} |",
+        text(row, "scene"),
+        text(row, "transport"),
+        text(row, "motion"),
+        text(row, "mis"),
+        number(row, "seeds"),
+        number(row, "mean difference %"),
+        number(row, "standard error %"),
+        number(row, "resolved blocks"),
+        number(row, "lit blocks"),
+        row["largest block difference %"].as_f64().map_or("–".into(), |largest| format!("{largest:.2} %")),
+        text(row, "verdict"),
+    )
+}
+
+const VERDICTS: [&str; 3] = ["| passed |", "| failed |", "| not resolved |"];
+
+#[test]
+fn the_table_of_unbiased_direct_light_is_its_evidence() {
+    assert_table("docs/restir_di.md", "docs/evidence/restir_di.json", |line| VERDICTS.iter().any(|end| line.ends_with(end)), told);
+}
+
+#[test]
+fn the_table_of_unbiased_indirect_light_is_its_evidence() {
+    assert_table("docs/restir_gi.md", "docs/evidence/restir_gi.json", |line| VERDICTS.iter().any(|end| line.ends_with(end)), told);
+}
+
+/// Milliseconds and rays a pixel of each pass.
+fn passes(row: &Value) -> String {
+    let pass = |it: &Value| format!("{} {:.1} ({:.2})", text(it, "pass"), number(it, "ms"), number(it, "rays a pixel"));
+    row["passes"].as_array().expect("passes").iter().map(pass).collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn the_table_of_what_direct_light_costs_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" lights |");
+    assert_table("docs/restir_di.md", "docs/evidence/restir_di_cost.json", shown, |row| {
+        format!("| `{}` | {} lights | {:.1} | {} |", text(row, "graph"), number(row, "lights"), number(row, "ms"), passes(row))
+    });
+}
+
+#[test]
+fn the_table_of_what_indirect_light_costs_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| ") && line.contains(" B |");
+    assert_table("docs/restir_gi.md", "docs/evidence/restir_gi_cost.json", shown, |row| {
+        let bytes = &row["bytes a pixel"];
+        format!(
+            "| {} | `{}` | {} | {:.1} | {} | {} B | {} B | {} B |",
+            text(row, "scene"),
+            text(row, "graph"),
+            text(row, "transport"),
+            number(row, "ms"),
+            passes(row),
+            number(bytes, "history"),
+            number(bytes, "read"),
+            number(bytes, "written")
+        )
+    });
+}
+
+#[test]
+fn the_table_of_the_light_change_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" frames |");
+    assert_table("docs/restir_gi.md", "docs/evidence/light_change.json", shown, |row| {
+        let by_frame = row["error / converged by frame"].as_array().expect("a number for each frame");
+        let at = |frame: usize| by_frame[frame].as_f64().expect("a number");
+        let errors: Vec<String> = [0, 5, 6, 12, 30, 60].map(|frame| format!("{:.1}", at(frame))).to_vec();
+        format!("| `{}` | {} | {} frames |", text(row, "graph"), errors.join(" | "), number(row, "frames above twice"))
+    });
+}
