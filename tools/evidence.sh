@@ -3,6 +3,7 @@
 #
 #     tools/evidence.sh external [--size 64x36|256x144] [--minutes N] [SCENE:TRANSPORT …]
 #     tools/evidence.sh held_out [SCENE …]
+#     tools/evidence.sh compare_aa
 #     tools/evidence.sh restir_di [MINUTES] [SCENE …]
 #     tools/evidence.sh restir_gi [MINUTES] [SCENE …]
 #     tools/evidence.sh restir_di_cost
@@ -12,6 +13,7 @@
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
+# compare_aa: twenty comparisons of graphs with themselves, some minutes; at 5 % one in twenty gives a verdict by chance.
 # Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over. A row wants some 10⁹ rays.
@@ -31,6 +33,10 @@ held_out)
     cargo build --quiet -p aquifer
     "${PYTHON:-python3}" tests/external/held_out.py target/debug/aquifer out/evidence/held_out "$@"
     ;;
+compare_aa)
+    cargo build --quiet -p aquifer
+    tools/evidence/compare_aa.sh target/debug/aquifer docs/evidence/compare_aa.json "$(git rev-parse HEAD)" "$(date -u +%F)"
+    ;;
 restir_di | restir_gi)
     minutes=${1:-600}
     [ $# -eq 0 ] || shift
@@ -45,7 +51,7 @@ light_change | error_parts)
     cargo run --quiet -p aquifer-tests --example "$item" -- "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
 *)
-    echo "evidence: no item \`$item\`; there are: external, held_out, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change, error_parts" >&2
+    echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change, error_parts" >&2
     exit 2
     ;;
 esac

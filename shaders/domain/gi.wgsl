@@ -3,10 +3,10 @@
 //!
 //! The measure is the solid angle of x_s at the pixel's surface; a sample moves between pixels by reconnection to x_s. The radiance is an estimate by
 //! path tracing, kept as it is: for other pixels too, as if x_s were diffuse. Paths count from two scatterings on: what x_s emits itself is direct light.
-//! bias (glossy): the radiance that left a glossy point one way is taken for that of all ways; `gi_path` evaluates it anew
+//! bias (glossy) [domain = gi_path]: the radiance that left a glossy point one way is taken for that of all ways
 //! bias (moving_objects): radiance found in earlier frames is kept, though what it came from has moved since
 //! bias (moving_lights): radiance found in earlier frames is kept, though lights have moved since
-//! bias (visibility = at_shading): samples exist only where the pixel that drew them sees them, which no MIS weight knows
+//! bias (visibility = at_shading) [visibility = in_target]: samples exist only where the pixel that drew them sees them, which no MIS weight knows
 
 import package::base::math::{HUGE, luminance, max3};
 import package::base::rng::{Rng};

@@ -8,7 +8,7 @@
 //! every pixel: a share of it kept in L would depend on the pixel that drew it.
 //! bias (moving_objects): light found in earlier frames is kept, though what it came from has moved since
 //! bias (moving_lights): light found in earlier frames is kept, though lights have moved since
-//! bias (visibility = at_shading): samples exist only where the pixel that drew them sees them, which no MIS weight knows
+//! bias (visibility = at_shading) [visibility = in_target]: samples exist only where the pixel that drew them sees them, which no MIS weight knows
 
 import package::base::math::{is_finite, luminance, max3};
 import package::base::pack::{pack_radiance, pack_unit, unpack_radiance, unpack_unit};

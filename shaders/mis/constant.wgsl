@@ -1,7 +1,7 @@
 //! Fills slot `mis`: m_i = c_i / C, the 1/M of Bitterli et al. 2020, alg. 4. No input's target is evaluated at another's sample.
 //!
 //! At a sample that some input could not have made, the shares of those that could sum to less than 1.
-//! bias: it loses energy where the inputs' supports differ, at shadow edges, creases and the rims of lights
+//! bias [mis = contribution]: it loses energy where the inputs' supports differ, at shadow edges, creases and the rims of lights
 
 import package::base::rng::{Rng, rng_next4};
 import package::restir::inputs::{Input, MAX_INPUTS, candidate, total_confidence};

@@ -17,6 +17,9 @@ pub struct BiasFinding {
     /// The fact that a scene must have for it; `None` where nothing more is asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub given: Option<String>,
+    /// A setting that turns it off and leaves the rest alone: `slots.mis=contribution`; `None` where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub without: Option<String>,
 }
 
 impl Graph {
@@ -61,8 +64,19 @@ impl Graph {
             (None, None) => format!("kind `{}`", node.kind),
         };
         let place = self.sources.place(span.copied().unwrap_or(node.spans.name));
-        BiasFinding { pass: node.pass.clone(), place, what, why: bias.why.clone(), given: bias.given.clone() }
+        let (why, given, without) = (bias.why.clone(), bias.given.clone(), without(node, bias));
+        BiasFinding { pass: node.pass.clone(), place, what, why, given, without }
     }
+}
+
+/// The setting that turns a bias off, for the pass alone where its slot is its own.
+fn without(node: &Node, bias: &Bias) -> Option<String> {
+    if let (Some(param), Some(value)) = (&bias.param, &bias.unless) {
+        return Some(format!("{}.{param}={value}", node.pass));
+    }
+    let (slot, filling) = bias.without.as_ref()?;
+    let own = if node.spans.own_slots.contains(slot) { format!("{}.", node.pass) } else { String::new() };
+    Some(format!("{own}slots.{slot}={filling}"))
 }
 
 /// The part biases with the values that the node has.

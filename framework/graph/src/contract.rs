@@ -130,6 +130,8 @@ pub struct Bias {
     pub why: String,
     /// The fact that a scene must have for it; `None` where the scene has it, or where none is asked.
     pub given: Option<String>,
+    /// A slot and the filling that is without it.
+    pub without: Option<(String, String)>,
 }
 
 /// Why a kind of pass has no contract.

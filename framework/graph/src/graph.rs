@@ -1,7 +1,7 @@
 //! A graph whose every name, type and value has been checked.
 
 use crate::{Contract, Direction, Place, Port, Slots, Sources, Span, Transport, Value, When};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A checked graph: passes with their contracts, every wire joined to a port that exists and fits.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +41,8 @@ pub(crate) struct NodeSpans {
     pub name: Span,
     pub params: BTreeMap<String, Span>,
     pub slots: BTreeMap<String, Span>,
+    /// Slots that the pass fills itself.
+    pub own_slots: BTreeSet<String>,
     pub wires: Vec<Option<Span>>,
 }
 

@@ -18,7 +18,8 @@ pub(crate) fn contract(interface: &Interface) -> Result<Contract, String> {
     };
     for note in &interface.bias {
         let slot = slot_of(interface, &note.module);
-        contract.bias.push(Bias { slot, why: note.why.clone(), given: note.given.clone(), ..Bias::default() });
+        let (why, given, without) = (note.why.clone(), note.given.clone(), note.without.clone());
+        contract.bias.push(Bias { slot, why, given, without, ..Bias::default() });
     }
     for binding in own {
         match &binding.resource {
@@ -153,7 +154,14 @@ fn add_param(declared: Declared<'_>, contract: &mut Contract) -> Result<(), Stri
     if let Some(value) = tag(tags, "unbiased") {
         let why = tag(tags, "why").unwrap_or(doc).to_owned();
         let unless_slot = tag(tags, "unless").map(|text| pair(text).ok_or_else(|| wrong("unless", text))).transpose()?;
-        contract.bias.push(Bias { slot, param: Some(name.to_owned()), unless: Some(value.to_owned()), unless_slot, why, given: None });
+        contract.bias.push(Bias {
+            slot,
+            param: Some(name.to_owned()),
+            unless: Some(value.to_owned()),
+            unless_slot,
+            why,
+            ..Bias::default()
+        });
     }
     contract.params.push(Param { name: name.to_owned(), default, range, choices, live, doc: doc.to_owned() });
     Ok(())

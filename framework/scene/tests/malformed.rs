@@ -2,9 +2,8 @@
 
 mod common;
 
-use aquifer_scene::{CpuTracer, Emitters, EnvironmentDistribution, Features, LightList, LoadError, Scene, Tlas};
-use common::{File, glb, rich};
-use glam::Vec3;
+use aquifer_scene::{LoadError, Scene};
+use common::{File, glb, rich, use_it};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
@@ -35,25 +34,6 @@ fn attempt(bytes: &[u8], case: &str) -> Result<Scene, LoadError> {
     }
     assert!(start.elapsed() < PATIENCE, "{case}: took {:?}", start.elapsed());
     result
-}
-
-/// Everything that a renderer would do before its first frame.
-fn use_it(scene: &Scene, case: &str) {
-    for mesh in &scene.meshes {
-        assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < mesh.positions.len()), "{case}");
-        assert!(mesh.normals.len() == mesh.positions.len() && mesh.materials.len() == mesh.triangles.len(), "{case}");
-        assert!(mesh.normals.iter().all(|normal| normal.is_normalized()), "{case}");
-        assert!(mesh.tangents.iter().all(|tangent| tangent.is_finite() && tangent.w.abs() == 1.0), "{case}");
-    }
-    Features::of(scene);
-    let emitters = Emitters::find(scene);
-    let environment = scene.environment.as_ref().map(EnvironmentDistribution::new);
-    for time in [0.0, 1.0, 1e9] {
-        let Ok(moment) = scene.at(time, None) else { continue };
-        let tlas = Tlas::build(scene, &moment);
-        LightList::build(scene, &emitters, environment.as_ref(), &moment, &tlas);
-        CpuTracer::new(scene, &moment, &tlas).closest(Vec3::new(0.3, 0.2, 9.0), Vec3::NEG_Z, [0.0, f32::INFINITY]);
-    }
 }
 
 /// Every place in a document.

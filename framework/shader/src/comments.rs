@@ -11,11 +11,14 @@ pub struct Doc {
     pub tags: Vec<(String, String)>,
 }
 
-/// `bias: why`, or `bias (condition): why`, whose condition is a fact of the scene, or `slot = filling`.
-#[derive(Debug, PartialEq)]
+/// `bias (condition) [slot = filling]: why`. The condition is a fact of the scene, or `slot = filling`; in brackets stands what has not this bias.
+/// Both may be left out.
+#[derive(Debug, Default, PartialEq)]
 pub struct BiasLine {
     /// Under which it biases; `None`: always.
     pub condition: Option<String>,
+    /// A slot and the filling that is without it.
+    pub without: Option<(String, String)>,
     /// The reason.
     pub why: String,
 }
@@ -23,12 +26,20 @@ pub struct BiasLine {
 impl BiasLine {
     fn read(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("bias")?;
-        if let Some(why) = rest.strip_prefix(':') {
-            return Some(BiasLine { condition: None, why: why.trim().to_owned() });
-        }
-        let (condition, why) = rest.strip_prefix(" (")?.split_once("):")?;
-        Some(BiasLine { condition: Some(condition.trim().to_owned()), why: why.trim().to_owned() })
+        let (condition, rest) = enclosed(rest, " (", ')').map_or((None, rest), |(text, rest)| (Some(text.to_owned()), rest));
+        let (without, rest) = enclosed(rest, " [", ']').map_or((None, rest), |(text, rest)| (Some(text), rest));
+        let without = match without {
+            Some(text) => text.split_once('=').map(|(slot, filling)| Some((slot.trim().to_owned(), filling.trim().to_owned())))?,
+            None => None,
+        };
+        Some(BiasLine { condition, without, why: rest.strip_prefix(':')?.trim().to_owned() })
     }
+}
+
+/// What stands between `open` and `close` at the beginning of a text, and what follows.
+fn enclosed<'a>(text: &'a str, open: &str, close: char) -> Option<(&'a str, &'a str)> {
+    let (inner, rest) = text.strip_prefix(open)?.split_once(close)?;
+    Some((inner.trim(), rest))
 }
 
 /// All comments of one module that mean something to the host.
@@ -142,14 +153,16 @@ mod tests {
 
     #[test]
     fn comments_are_found_where_they_belong() {
-        let text = "//! Tone mapping.\n//!\n//! bias: none of this is linear\n//! bias (metals): they are dull\nimport package::base::math::{PI};\n\
+        let text = "//! Tone mapping.\n//!\n//! bias: none of this is linear\n//! bias (metals) [curve = agx]: they are dull\n//! bias [x]: no line\nimport package::base::math::{PI};\n\
             struct Params {\n    /// Stops.\n    /// @default 0\n    /// @range -16 16\n    exposure: f32,\n    plain: u32,\n}\n\
             @group(1) @binding(0) var<uniform> params: Params;\n/// What comes in.\n/// @optional\n\
             @group(1) @binding(1) var<storage, read> color: array<vec4<f32>>;\n/// Taps.\n@id(3) override taps: u32 = 5u;\n";
         let comments = Comments::read(text);
-        assert_eq!(comments.manual, "Tone mapping.\n\n");
-        let bias = |condition: Option<&str>, why: &str| BiasLine { condition: condition.map(str::to_owned), why: why.to_owned() };
-        assert_eq!(comments.bias, [bias(None, "none of this is linear"), bias(Some("metals"), "they are dull")]);
+        assert_eq!(comments.manual, "Tone mapping.\n\nbias [x]: no line\n");
+        let always = BiasLine { why: "none of this is linear".into(), ..BiasLine::default() };
+        let metals =
+            BiasLine { condition: Some("metals".into()), without: Some(("curve".into(), "agx".into())), why: "they are dull".into() };
+        assert_eq!(comments.bias, [always, metals]);
         assert_eq!(comments.of("Params.exposure").tags, [("default".into(), "0".into()), ("range".into(), "-16 16".into())]);
         assert_eq!(comments.of("Params.plain"), Doc::default());
         assert_eq!(comments.of("color"), Doc { text: "What comes in.".into(), tags: vec![("optional".into(), String::new())] });

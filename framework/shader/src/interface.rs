@@ -170,8 +170,8 @@ pub enum Scalar {
     F32,
 }
 
-/// `//! bias: why` of a module, or `//! bias (condition): why`; a condition is a fact of the scene, or `slot = filling`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// `//! bias (condition) [slot = filling]: why` of a module; a condition is a fact of the scene, or `slot = filling`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BiasNote {
     /// Module path.
     pub module: String,
@@ -179,6 +179,8 @@ pub struct BiasNote {
     pub why: String,
     /// The fact that the scene would have to have; `None` where it has it, or where none is asked.
     pub given: Option<String>,
+    /// A slot and the filling that is without this bias.
+    pub without: Option<(String, String)>,
 }
 
 impl Layout {

@@ -246,7 +246,7 @@ impl Reader<'_> {
         let note = |(path, line): (&&str, &BiasLine)| {
             let fact = line.condition.clone().filter(|condition| !condition.contains('='));
             let given = fact.filter(|fact| !self.what.features.contains(fact));
-            BiasNote { module: (*path).to_owned(), why: line.why.clone(), given }
+            BiasNote { module: (*path).to_owned(), why: line.why.clone(), given, without: line.without.clone() }
         };
         of_slots.map(note).collect()
     }

@@ -46,8 +46,10 @@ fn ports_come_from_use_and_slots() {
     let di = all().compose(&of("pass/initial", &[("domain", "di")], &[])).unwrap().interface;
     let names: Vec<_> = di.bindings.iter().map(|b| (b.group, b.binding, b.name.as_str(), b.read, b.written)).collect();
     assert_eq!(names, [(1, 0, "params", true, false), (1, 1, "reservoir", false, true)]);
-    let note =
-        |why: &str, given: Option<&str>| BiasNote { module: "pass/initial".into(), why: why.into(), given: given.map(str::to_owned) };
+    let note = |why: &str, given: Option<&str>| {
+        let given = given.map(str::to_owned);
+        BiasNote { module: "pass/initial".into(), why: why.into(), given, ..BiasNote::default() }
+    };
     assert_eq!(di.bias, [note("it is a test", None), note("it dazzles", Some("bright"))]);
     assert_eq!(di.manual, "Draws one sample.\n");
     assert_eq!(di.slots, [("domain".to_owned(), "domain/di".to_owned())]);

@@ -52,6 +52,35 @@ fn facts_of_scenes_bias() {
     }
 }
 
+/// What turns a bias off is said beside it, and turns off no other.
+#[test]
+fn every_switch_is_turned_off_by_itself() {
+    for (graph, settings, count) in [
+        ("restir_di", &[][..], 2),
+        ("restir_gi", &[], 2),
+        ("restir_di_unbiased", &["spatial.slots.mis=constant"], 1),
+        ("restir_di_unbiased", &["temporal.history_world=now", "slots.visibility=untested"], 2),
+        ("restir_gi_unbiased", &["spatial.jacobian=inverted", "initial.validate_every=6", "slots.visibility=at_shading"], 3),
+    ] {
+        let off = |more: &[String]| -> std::collections::BTreeSet<String> {
+            let all: Vec<&str> = settings.iter().copied().chain(more.iter().map(String::as_str)).collect();
+            let found = check(graph, &all).unwrap_or_else(|faults| panic!("{graph} with {all:?}: {faults}"));
+            found
+                .bias()
+                .into_iter()
+                .map(|finding| finding.without.unwrap_or_else(|| panic!("nothing turns {} off", finding.what)))
+                .collect()
+        };
+        let switches = off(&[]);
+        assert_eq!(switches.len(), count, "{graph}: {switches:?}");
+        for switch in &switches {
+            let rest: Vec<&String> = switches.iter().filter(|other| *other != switch).collect();
+            assert_eq!(off(&[switch.clone()]).iter().collect::<Vec<_>>(), rest, "{graph} without {switch}");
+        }
+        assert!(off(&switches.into_iter().collect::<Vec<_>>()).is_empty());
+    }
+}
+
 #[test]
 fn a_reader_that_assumes_another_visibility_is_refused() {
     let found = check("restir_di_unbiased", &["initial.slots.visibility=at_shading"]);

@@ -2,14 +2,17 @@
 
 use crate::{failure::Failure, ui::Ui, value};
 use aquifer_graph::{Document, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
-use aquifer_lab::stage;
-use aquifer_render::Registry;
+use aquifer_lab::{bench::auto, stage};
+use aquifer_render::{Context, Registry};
 use aquifer_scene::{Environment, Scene};
 use aquifer_scenes::Generator;
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 /// A graph, with what is laid over it.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct GraphArgs {
     /// A built-in graph (see `aquifer graphs`) or a .toml file
     pub graph: String,
@@ -24,7 +27,7 @@ pub struct GraphArgs {
 }
 
 /// Shaders beside the built-in ones.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct ShaderArgs {
     /// A folder of .wgsl files that add to the built-in shaders or replace them; repeatable
     #[arg(long = "shaders", value_name = "DIR")]
@@ -50,6 +53,22 @@ impl GraphArgs {
         Ok(document)
     }
 
+    /// The same where `slots.trace` is not `auto`; else with the tracer in its place that is faster on this adapter and scene.
+    pub fn choosing(&self, context: &Context, scene: &Arc<Scene>) -> Result<Self, Failure> {
+        let mut chosen = self.clone();
+        if self.leaves_tracer(&self.written()?, &[]) {
+            let tracer = auto::fastest(context, scene, &self.shaders.folders, &cache_folder())?;
+            chosen.settings.push(auto::choice(&tracer).text);
+        }
+        Ok(chosen)
+    }
+
+    /// Is the tracer to be chosen, after all edits? What is faulty is told elsewhere.
+    fn leaves_tracer(&self, written: &Document, edits: &[Source]) -> bool {
+        let mut document = written.clone();
+        document.apply(self.edits().chain(edits.iter().cloned())).is_ok() && auto::asked(&document)
+    }
+
     /// The graph's text as its files have it.
     fn written(&self) -> Result<Document, Failure> {
         Ok(Document::load(&file_name(&self.graph), &files())?)
@@ -66,10 +85,14 @@ impl GraphArgs {
         self.check_with(scene, [])
     }
 
-    /// As [`GraphArgs::check`], with further settings laid over it.
+    /// As [`GraphArgs::check`], with further settings laid over it. A tracer that is still to be chosen is the default one: no adapter is at hand.
     pub fn check_with(&self, scene: Option<&Scene>, edits: impl IntoIterator<Item = Source>) -> Result<(Graph, Registry), Failure> {
         let registry = self.shaders.registry(scene)?;
-        let graph = Graph::check_with(self.written()?, self.edits().chain(edits), &registry)?;
+        let (written, mut edits) = (self.written()?, edits.into_iter().collect::<Vec<_>>());
+        if self.leaves_tracer(&written, &edits) {
+            edits.extend(registry.library().default_slots().get("trace").map(|tracer| auto::choice(tracer)));
+        }
+        let graph = Graph::check_with(written, self.edits().chain(edits), &registry)?;
         Ok((graph, registry))
     }
 }
@@ -117,6 +140,13 @@ impl SceneArgs {
 pub fn file_of(source: &Source) -> Option<PathBuf> {
     let path = Path::new(&source.name);
     path.is_file().then(|| path.to_owned())
+}
+
+/// Where programs of this user keep what can be made again.
+pub fn cache_folder() -> PathBuf {
+    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cache"));
+    let folder = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).filter(|path| path.is_absolute()).or_else(home);
+    folder.unwrap_or_else(std::env::temp_dir).join("aquifer")
 }
 
 /// A built-in scene by name, or a file; finished.

@@ -37,6 +37,14 @@ pub fn milliseconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A mean square error, more than none.
+pub fn error(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(error) if error.is_finite() && error > 0.0 => Ok(error),
+        _ => Err("write an error above 0, e.g. 1e-3".to_owned()),
+    }
+}
+
 /// Frames to render.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Frames {

@@ -6,8 +6,12 @@ mod compare;
 mod graphs;
 #[path = "cli/images.rs"]
 mod images;
+#[path = "cli/interrupted.rs"]
+mod interrupted;
 #[path = "cli/manners.rs"]
 mod manners;
+#[path = "cli/protocols.rs"]
+mod protocols;
 #[path = "cli/regress.rs"]
 mod regress;
 #[path = "cli/render.rs"]

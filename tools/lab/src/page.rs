@@ -13,7 +13,7 @@ mod words;
 
 use crate::{
     atomic::{self, WriteError},
-    compare::report::{Cell, Report},
+    compare::report::{Cell, Report, Share},
     film::FilmError,
     metrics::heat,
     stats::SizesDiffer,
@@ -106,6 +106,7 @@ fn environment() -> Result<Environment<'static>, minijinja::Error> {
     environment.add_filter("date", words::date);
     environment.add_filter("command", |words: Vec<String>| words::command(&words));
     environment.add_filter("run_as", |Serde(cell): Serde<Cell>| words::run_as(&cell));
+    environment.add_filter("mean_of", |Serde(share): Serde<Share>| verdict::mean(share.mean_difference, share.mean_error));
     environment.add_template("page", TEMPLATE)?;
     Ok(environment)
 }

@@ -82,13 +82,16 @@ fn reads_in_words(browser: &mut Browser) {
         "second has 4.00 times lower mean square error at equal time than first (geometric mean of 2 scenes; lower on each).",
         "a warning",
         "+50.0 ± 0.100 %",
+        "cornell, MSE 0.00200: second reaches it in 37.5 ms, 4.00 times sooner than first",
+        "+25.0 ± 0.100 %",
+        "no setting turns it off",
     ] {
         assert!(text.contains(words), "`{words}` is not in\n{text}");
     }
     // Text of graphs stays text.
     assert_eq!(browser.evaluate("document.querySelector('details pre').textContent"), json!("title = \"</script>\""));
-    // Two plots of errors and two of correlations a scene, each drawn.
-    assert_eq!(browser.evaluate("document.querySelectorAll('.chart > svg, .chart > figure').length"), json!(8));
+    // Three plots of errors and two of correlations a scene, each drawn.
+    assert_eq!(browser.evaluate("document.querySelectorAll('.chart > svg, .chart > figure').length"), json!(10));
     let nameless = "[...document.querySelectorAll('button, input, select, [role=slider]')].filter((e) => !e.innerText && !e.labels?.length && !e.ariaLabel).length";
     assert_eq!(browser.evaluate(nameless), json!(0));
 }

@@ -97,6 +97,7 @@ fn node(pass: &Pass<'_>, contract: &Contract, index: usize, params: BTreeMap<Str
             name: pass.name.span,
             params: pass.entry.set.iter().map(|(key, literal)| (key.value.clone(), key.span.to(literal.span))).collect(),
             slots: pass.slot_spans.clone(),
+            own_slots: pass.entry.slots.iter().filter(|(_, filling)| filling.value.is_some()).map(|(slot, _)| slot.value.clone()).collect(),
             wires: vec![None; contract.ports.len()],
         },
     }

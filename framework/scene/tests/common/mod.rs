@@ -2,7 +2,9 @@
 
 #![allow(dead_code, reason = "every test file uses its own part of this")]
 
+use aquifer_scene::{CpuTracer, Emitters, EnvironmentDistribution, Features, LightList, Scene, Tlas};
 use bytemuck::Pod;
+use glam::Vec3;
 use serde_json::{Value, json};
 
 pub const U8: u32 = 5121;
@@ -183,4 +185,23 @@ pub fn rich() -> File {
         }),
     );
     file
+}
+
+/// Everything that a renderer would do before its first frame.
+pub fn use_it(scene: &Scene, case: &str) {
+    for mesh in &scene.meshes {
+        assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < mesh.positions.len()), "{case}");
+        assert!(mesh.normals.len() == mesh.positions.len() && mesh.materials.len() == mesh.triangles.len(), "{case}");
+        assert!(mesh.normals.iter().all(|normal| normal.is_normalized()), "{case}");
+        assert!(mesh.tangents.iter().all(|tangent| tangent.is_finite() && tangent.w.abs() == 1.0), "{case}");
+    }
+    Features::of(scene);
+    let emitters = Emitters::find(scene);
+    let environment = scene.environment.as_ref().map(EnvironmentDistribution::new);
+    for time in [0.0, 1.0, 1e9] {
+        let Ok(moment) = scene.at(time, None) else { continue };
+        let tlas = Tlas::build(scene, &moment);
+        LightList::build(scene, &emitters, environment.as_ref(), &moment, &tlas);
+        CpuTracer::new(scene, &moment, &tlas).closest(Vec3::new(0.3, 0.2, 9.0), Vec3::NEG_Z, [0.0, f32::INFINITY]);
+    }
 }

@@ -7,7 +7,7 @@ mod words;
 use crate::{
     cli::VERSION,
     failure::Failure,
-    source::{SceneArgs, ShaderArgs, files, text_of},
+    source::{SceneArgs, ShaderArgs, cache_folder, files, text_of},
     ui::Ui,
     value,
     watch::Watch,
@@ -15,6 +15,7 @@ use crate::{
 use aquifer_graph::{Document, Graph, Transport};
 use aquifer_lab::{
     atomic,
+    bench::auto,
     compare::{
         bench::Entrant,
         report::{GraphFacts, Made, Protocol, Report, SCHEMA},
@@ -27,7 +28,7 @@ use aquifer_render::{Clock, Context, ContextOptions};
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
-    time::{SystemTime, UNIX_EPOCH},
+    time::{Instant, SystemTime, UNIX_EPOCH},
 };
 
 /// Which error is measured.
@@ -101,6 +102,12 @@ pub struct Args {
     /// Milliseconds for every graph whose time can be chosen; without it, the frame time of those whose time cannot
     #[arg(long, value_name = "MS", value_parser = value::milliseconds, allow_negative_numbers = true, help_heading = "Protocol")]
     budget: Option<f64>,
+    /// The mean square error to be reached, for the times of equal error [default: what every graph reaches]; only with growing budgets
+    #[arg(long, value_name = "MSE", value_parser = value::error, allow_negative_numbers = true, help_heading = "Protocol")]
+    equal_error: Option<f64>,
+    /// Turn each biased switch of each graph on alone and off alone, for its share of the bias; only of one frame
+    #[arg(long, help_heading = "Protocol")]
+    explain_bias: bool,
     /// Where in its pixel the film takes its sample
     #[arg(long, value_enum, default_value = "centred", help_heading = "Protocol")]
     film: FilmChoice,
@@ -131,6 +138,7 @@ pub struct Args {
 }
 
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
+    args.refuse_unsuited()?;
     jobs::make_folder(&args)?;
     let entrants = entrants::swept(entrants::entrants(&args.graphs, &args.settings, args.transport)?, &args.sweeps)?;
     let report = match args.jobs.is_whole() {
@@ -138,9 +146,12 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
         false => args.jobs.run(&args, &entrants, ui)?,
     };
     let Some(report) = report else { return Ok(()) };
+    let began = Instant::now();
     page::write(&report, &args.output)?;
+    let page_seconds = began.elapsed().as_secs_f64();
     report.warnings.iter().for_each(|warning| ui.warn(warning));
     ui.note(&format!("wrote {}", args.output.join("report.html").display()));
+    ui.note(&words::overhead(&report.made, page_seconds));
     if args.json { ui.json(&report) } else { ui.print(&words::report(&report)) }
 }
 
@@ -158,6 +169,7 @@ impl Args {
         let mut clock = Clock::Wall;
         for (index, name) in scenes.iter().enumerate() {
             let (stage, facts) = self.stage(name, &context, ui)?;
+            let entrants = &self.choosing(entrants, &stage)?[..];
             if index == 0 {
                 report.graphs = entrants.iter().map(|entrant| graph_facts(entrant, &stage)).collect::<Result<_, Failure>>()?;
                 report.warnings.extend(self.refuse_unlike(&report.graphs)?);
@@ -173,6 +185,27 @@ impl Args {
         report.warnings.extend(watch.finish());
         report.made = Made { clock: words::clock(clock).to_owned(), ..made(&context, report.made) };
         Ok(report)
+    }
+
+    /// Graphs that leave the choice of their tracer get the one that is faster on this scene.
+    fn choosing(&self, entrants: &[Entrant], stage: &Stage) -> Result<Vec<Entrant>, Failure> {
+        let mut entrants = entrants.to_vec();
+        for entrant in entrants.iter_mut().filter(|entrant| auto::asked(&entrant.document)) {
+            let tracer = auto::fastest(&stage.context, &stage.scene, &self.shaders.folders, &cache_folder())?;
+            entrant.document.apply([auto::choice(&tracer)])?;
+        }
+        Ok(entrants)
+    }
+
+    /// What is asked for belongs to what is measured.
+    fn refuse_unsuited(&self) -> Result<(), Failure> {
+        if self.equal_error.is_some() && self.protocol != ProtocolName::Accumulate {
+            return Err(Failure::new("--equal-error is of growing budgets: it needs --protocol accumulate"));
+        }
+        if self.explain_bias && self.protocol != ProtocolName::Frame {
+            return Err(Failure::new("--explain-bias is of one frame: it needs --protocol frame"));
+        }
+        Ok(())
     }
 
     fn protocol(&self) -> Protocol {
@@ -219,6 +252,9 @@ impl Args {
             path_tracer: Document::load("path_tracer.toml", &files())?,
             cache: self.cache.clone().unwrap_or_else(cache_folder),
             folder: self.output.clone(),
+            explain_bias: self.explain_bias,
+            equal_error: self.equal_error,
+            version: VERSION.to_owned(),
         })
     }
 
@@ -264,11 +300,4 @@ fn made(context: &Context, spent: Made) -> Made {
         driver: adapter.driver.clone(),
         ..spent
     }
-}
-
-/// Where programs of this user keep what can be made again.
-fn cache_folder() -> PathBuf {
-    let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".cache"));
-    let folder = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).filter(|path| path.is_absolute()).or_else(home);
-    folder.unwrap_or_else(std::env::temp_dir).join("aquifer")
 }

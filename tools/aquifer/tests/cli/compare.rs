@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Two graphs whose time cannot be chosen, so that what is measured does not hang on the clock.
-const SMALL: [&str; 11] =
+pub const SMALL: [&str; 11] =
     ["compare", "restir_di", "restir_di_unbiased", "--scene", "cornell", "--size", "16x9", "--warm-up", "2", "--reference-samples", "512"];
 
 fn compare(out: &Path, cache: &Path, more: &[&str]) -> Value {
@@ -13,11 +13,16 @@ fn compare(out: &Path, cache: &Path, more: &[&str]) -> Value {
     let args: Vec<&str> = SMALL.iter().chain(&folders).chain(more).copied().collect();
     let run = aquifer(&args);
     assert_eq!(run.code, 0, "{}", run.err);
-    serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap()
+    report(out)
+}
+
+/// What is in a folder that was written.
+pub fn report(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("report.json")).unwrap()).unwrap()
 }
 
 /// Errors of every seed of every graph.
-fn errors(report: &Value) -> Vec<Value> {
+pub fn errors(report: &Value) -> Vec<Value> {
     report["scenes"][0]["cells"].as_array().unwrap().iter().map(|cell| cell["mse"]["values"].clone()).collect()
 }
 
@@ -61,7 +66,7 @@ fn jobs_make_the_comparison() {
     with(&["--index", "2"]).fails(1, "there is no job 2");
     assert_eq!(with(&["--shard", "0/2"]).code, 0);
     assert_eq!(with(&["--merge"]).code, 0);
-    let report: Value = serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
+    let report = report(&out);
     let scene = &report["scenes"][0];
     assert_eq!((scene["cells"].as_array().unwrap().len(), scene["pairs"].as_array().unwrap().len()), (2, 1));
     // Times of another adapter are not merged.

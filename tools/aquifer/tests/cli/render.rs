@@ -241,3 +241,32 @@ fn a_watched_graph_is_rendered_anew_and_a_broken_one_changes_nothing() {
     assert!(interrupted.success());
     assert_eq!(child.0.wait().expect("it ends").code(), Some(0));
 }
+
+#[test]
+fn the_tracer_is_chosen_once_and_named() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let cache = folder.path().to_string_lossy().into_owned();
+    let out = folder.path().join("a.exr");
+    let path = out.to_string_lossy().into_owned();
+    let args = ["render", "path_tracer", "--scene", "cornell", "--size", "16x9", "--frames", "1", "--set", "slots.trace=auto", "-o", &path];
+    let chosen = || {
+        assert_eq!(aquifer_with(("XDG_CACHE_HOME", &cache), &args).code, 0);
+        let text = Film::read(&out).expect("the film").facts.expect("facts").graph.text;
+        let (_, chosen) = text.rsplit_once("slots.trace=").expect("the last word on the tracer");
+        chosen.trim().to_owned()
+    };
+    let measured = chosen();
+    assert!(["bvh2", "cwbvh"].contains(&measured.as_str()), "{measured}");
+    // What is kept has the word, whoever wins today.
+    let kept = names(&folder.path().join("aquifer")).into_iter().find(|name| name.starts_with("tracer-")).expect("the choice is kept");
+    let kept = folder.path().join("aquifer").join(kept);
+    let text = std::fs::read_to_string(&kept).expect("JSON");
+    let other = if measured == "bvh2" { "cwbvh" } else { "bvh2" };
+    std::fs::write(&kept, text.replace(&format!("\"{measured}\""), &format!("\"{other}\""))).expect("the folder can be written");
+    assert_eq!(chosen(), other);
+    // Without an adapter at hand it is the default.
+    aquifer(&["check", "path_tracer", "--set", "slots.trace=auto"]).succeeds();
+}

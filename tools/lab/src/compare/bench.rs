@@ -24,10 +24,10 @@ pub struct Entrant {
     pub settings: Vec<String>,
 }
 
-/// Frames whose median is a graph's frame time when budgets are settled.
+/// Frames of one visit whose median is a graph's frame time when budgets are settled.
 const SETTLING_FRAMES: u32 = 3;
 /// Visits to each graph meanwhile, in turn, so that a busy moment of the machine does not decide.
-const SETTLING_VISITS: u32 = 4;
+const SETTLING_VISITS: u32 = 5;
 /// Frames of warm-up that settling gives to graphs with history: their cost has settled by then.
 const SETTLING_WARM_UP: u32 = 8;
 
@@ -82,17 +82,16 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// What a graph, the device or the disk refuses.
     pub fn settle(&mut self, observer: &mut dyn Observer) -> Result<Settled, CompareError> {
-        if let Some(settled) = self.store.settled() {
+        if let Some(settled) = self.store.settled().filter(|settled| settled.fits(self.entrants.len())) {
             return Ok(settled);
         }
         observer.progress("timing each graph", 0, 0);
-        let mut times = vec![Vec::new(); self.entrants.len()];
+        let mut visits = Vec::new();
         for _ in 0..SETTLING_VISITS {
-            for (graph, times) in times.iter_mut().enumerate() {
-                times.extend(self.frame_times(graph, None)?);
-            }
+            let times = (0..self.entrants.len()).map(|graph| Ok(median(&self.frame_times(graph, None)?)));
+            visits.push(times.collect::<Result<Vec<f64>, CompareError>>()?);
         }
-        let frame_ms: Vec<f64> = times.iter().map(|times| median(times)).collect();
+        let frame_ms = frame_times(&visits);
         let cells = self.cells(&frame_ms)?;
         let settled = Settled { frame_ms, cells };
         self.store.settle(&settled)?;
@@ -129,7 +128,7 @@ impl<'a> Bench<'a> {
             for &(budget, of) in &budgets {
                 cells.push(match of {
                     Some(of) if of == graph => as_written(graph),
-                    _ => SettledCell { graph, budget: Some((budget, of)), offers: self.offers(graph, budget)? },
+                    _ => SettledCell { graph, budget: Some((budget, of)), offers: self.offers(graph, budget, of)? },
                 });
             }
         }
@@ -142,7 +141,7 @@ impl<'a> Bench<'a> {
         subject.independent() || subject.knob_range().is_some()
     }
 
-    fn offers(&mut self, graph: usize, budget: f64) -> Result<Vec<Offer>, CompareError> {
+    fn offers(&mut self, graph: usize, budget: f64, of: Option<usize>) -> Result<Vec<Offer>, CompareError> {
         let subject = self.as_written(graph);
         let (knob, independent) = (subject.knob_range(), subject.independent());
         let mut known: HashMap<Option<u64>, f64> = HashMap::new();
@@ -151,10 +150,22 @@ impl<'a> Bench<'a> {
             if let Some(&ms) = known.get(&key) {
                 return Ok(ms);
             }
-            let ms = median(&self.frame_times(graph, knob)?);
+            let ms = self.beside(graph, knob, budget, of)?;
             known.insert(key, ms);
             Ok(ms)
         })
+    }
+
+    /// Frame time of a graph whose budget is the time of `of`: both take turns, and the median of their ratios tells, whatever the machine does
+    /// beside. A budget in plain milliseconds has nobody to be held against.
+    fn beside(&mut self, graph: usize, knob: Option<f64>, budget: f64, of: Option<usize>) -> Result<f64, CompareError> {
+        let mut relative = Vec::new();
+        for _ in 0..SETTLING_VISITS {
+            let owner = of.map(|of| self.frame_times(of, None)).transpose()?;
+            let own = median(&self.frame_times(graph, knob)?);
+            relative.push(own / owner.map_or(budget, |times| median(&times)));
+        }
+        Ok(budget * median(&relative))
     }
 
     /// Measures every cell with one seed, and keeps what came out.
@@ -162,6 +173,12 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// What the device or the disk refuses; [`CompareError::Interrupted`].
     pub fn round(&mut self, number: u32, settled: &Settled, observer: &mut dyn Observer) -> Result<Round, CompareError> {
+        // A comparison that goes on has not compiled what was settled before.
+        for cell in &settled.cells {
+            for offer in &cell.offers {
+                self.subject(cell.graph, offer.knob)?;
+            }
+        }
         let began = Instant::now();
         let mut round = Round::default();
         for (index, cell) in settled.cells.iter().enumerate() {
@@ -189,45 +206,47 @@ impl<'a> Bench<'a> {
         let subject = self.subject(graph, offer.knob)?;
         let independent = subject.independent();
         let mut takes = Takes { store, name, mean: Mean::default(), ms: 0.0, passes: Vec::new(), takes: Vec::new() };
-        let began = Instant::now();
-        let mut aside = 0.0;
-        let mut keep = |takes: &mut Takes<'_>, frame: u32| -> Result<(), CompareError> {
-            let began = Instant::now();
-            takes.keep(frame)?;
-            aside += began.elapsed().as_secs_f64();
-            Ok(())
-        };
         let warm_up = if independent { 0 } else { protocol.warm_up() };
         let schedule = Schedule { warm_up, frames: offer.frames };
-        match protocol {
+        let seconds = match protocol {
             Protocol::Frame { .. } => {
-                subject.run(random.bits(), schedule, |_, subject, shot| takes.add(subject, &shot))?;
-                keep(&mut takes, offer.frames)?;
+                let seconds = subject.run(random.bits(), schedule, |_, subject, shot| takes.add(subject, &shot))?;
+                takes.keep(offer.frames)?;
+                seconds
             }
             Protocol::Accumulate { .. } => subject.run(random.bits(), schedule, |frame, subject, shot| {
                 takes.add(subject, &shot)?;
                 let done = frame + 1;
-                if done.is_power_of_two() || done == offer.frames { keep(&mut takes, done) } else { Ok(()) }
+                if done.is_power_of_two() || done == offer.frames { takes.keep(done) } else { Ok(()) }
             })?,
             Protocol::Trace { frames, .. } if independent => {
+                let mut seconds = 0.0;
                 for frame in 0..frames {
                     subject.set_time((f64::from(time) + f64::from(step) * f64::from(frame)) as f32);
-                    subject.run(random.bits(), schedule, |_, subject, shot| takes.add(subject, &shot))?;
-                    keep(&mut takes, frame)?;
+                    seconds += subject.run(random.bits(), schedule, |_, subject, shot| takes.add(subject, &shot))?;
+                    takes.keep(frame)?;
                     takes.begin();
                 }
+                seconds
             }
             Protocol::Trace { frames, .. } => subject.run(random.bits(), Schedule { warm_up: 0, frames }, |frame, subject, shot| {
                 takes.add(subject, &shot)?;
-                keep(&mut takes, frame)?;
+                takes.keep(frame)?;
                 takes.begin();
                 Ok(())
             })?,
-        }
-        let seconds = began.elapsed().as_secs_f64() - aside;
-        let passes = takes.passes.iter().map(|times| median(times)).collect();
+        };
+        let passes = takes.passes.iter().map(|times| (!times.is_empty()).then(|| median(times))).collect();
         Ok((Run { takes: takes.takes, passes }, seconds))
     }
+}
+
+/// The frame time of each graph, from visits to all of them: its share of each visit tells, for a visit that was slow for all was slow for all alike.
+fn frame_times(visits: &[Vec<f64>]) -> Vec<f64> {
+    let whole = |visit: &Vec<f64>| visit.iter().sum::<f64>();
+    let usual = median(&visits.iter().map(whole).collect::<Vec<_>>());
+    let share = |graph: usize| median(&visits.iter().map(|visit| visit[graph] / whole(visit)).collect::<Vec<_>>());
+    (0..visits.first().map_or(0, Vec::len)).map(|graph| usual * share(graph)).collect()
 }
 
 /// Budgets in milliseconds, with the graph that each is the frame time of: one for every graph whose time cannot be changed; without such,
@@ -262,9 +281,8 @@ impl Takes<'_> {
         for (times, ms) in self.passes.iter_mut().zip(&shot.passes) {
             times.extend(ms);
         }
-        // A clock that ran backwards has no word on this frame; its median so far stands in.
-        let counted = self.passes.iter().zip(subject.passes()).filter(|(_, (_, counted))| *counted);
-        self.ms += subject.time_of(shot).unwrap_or_else(|| counted.map(|(times, _)| median(times)).sum());
+        // A clock that ran backwards has no word on this frame; the wall's stands in.
+        self.ms += subject.time_of(shot).unwrap_or(shot.wall_ms);
         self.mean.add(&shot.film);
         Ok(())
     }
@@ -308,6 +326,12 @@ impl Mean {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn slow_moments_change_no_ratio() {
+        let found = frame_times(&[vec![1.0, 3.0], vec![4.0, 12.0], vec![1.1, 3.3], vec![0.5, 30.0], vec![2.0, 6.0]]);
+        assert!((found[1] / found[0] - 3.0).abs() < 1e-9 && (found[0] - 2.0).abs() < 1e-9, "{found:?}");
+    }
 
     #[test]
     fn graphs_that_cannot_change_set_the_budgets() {

@@ -17,6 +17,9 @@ pub struct Offer {
 
 /// How often the bracket may move before the nearest is taken: times are nearly linear in the knob.
 const MOVES: u32 = 6;
+/// Where steps of the knob are fine, both runs are so far from the budget, as a share of it, that the median times of the rounds still lie on either
+/// side: times settle to a few percent. An error that falls as 1/time comes out too large by at most the square of this, a thousandth.
+const ROOM: f64 = 0.03;
 
 /// The offers around `budget` milliseconds: one where it is met at the end of what can be set, else two. `measure` gives the milliseconds
 /// of one frame at a value of the knob.
@@ -101,7 +104,9 @@ impl Line {
                 break;
             }
         }
-        let above = (below + 1.0).min(most);
+        let room = self.slope.filter(|slope| *slope > 0.0).map_or(0.0, |slope| (ROOM * budget / slope).floor());
+        let above = (below + 1.0 + room).min(most);
+        below = (below - room).max(least);
         Ok(if below == above { vec![offer(below)] } else { vec![offer(below), offer(above)] })
     }
 }
@@ -147,6 +152,14 @@ mod tests {
         // Two frames of up to 50 are needed for 80: each at 40, between 12 and 13.
         assert_eq!(offers(80.0, Some(KNOB), true, line), [(Some(12.0), 2), (Some(13.0), 2)]);
         assert_eq!(offers(80.0, Some(KNOB), false, line), [(Some(16.0), 1)], "a graph with history ends with its knob");
+    }
+
+    #[test]
+    fn fine_steps_leave_room() {
+        let fine = KnobRange { most: 1000.0, ..KNOB };
+        let found = offers(100.0, Some(fine), false, |k| 0.5 * k);
+        let [(Some(below), 1), (Some(above), 1)] = found[..] else { panic!("{found:?}") };
+        assert!((0.5 * below - 97.0).abs() <= 0.5 && (0.5 * above - 103.0).abs() <= 0.5, "{found:?}");
     }
 
     #[test]

@@ -13,16 +13,20 @@ const REACH: usize = 8;
 pub fn correlation(frames: &[Vec<Film>]) -> Correlation {
     let noise: Vec<Vec<Vec<f64>>> = frames.iter().map(|films| noise(films)).collect();
     let Some((last, before)) = noise.split_last() else { return Correlation::default() };
-    let variance = product(last, last);
+    let (variance, flicker) = (product(last, last), flicker(frames));
+    if variance <= 0.0 {
+        return Correlation { flicker, ..Correlation::default() };
+    }
     Correlation {
         temporal: before.iter().rev().map(|earlier| product(last, earlier) / variance).collect(),
         spatial: (1..=REACH).map(|away| spatial(last, frames[frames.len() - 1][0].size, away) / variance).collect(),
-        flicker: flicker(frames),
+        flicker,
         accumulation_gain: Vec::new(),
     }
 }
 
-/// Variance of one frame over N times the variance of the mean of N, for N = 1, 2, 4, …: from the films of both, by seed.
+/// Variance of one frame over N times the variance of the mean of N, for N = 1, 2, 4, …: from the films of both, by seed. Nothing of what does
+/// not vary.
 pub fn accumulation_gain(means: &[(u32, Vec<Film>)]) -> Vec<(u32, f64)> {
     let variance = |films: &[Film]| {
         let noise = noise(films);
@@ -30,7 +34,8 @@ pub fn accumulation_gain(means: &[(u32, Vec<Film>)]) -> Vec<(u32, f64)> {
     };
     let Some((_, single)) = means.iter().find(|(frames, _)| *frames == 1) else { return Vec::new() };
     let one = variance(single);
-    means.iter().map(|(frames, films)| (*frames, one / (f64::from(*frames) * variance(films)))).collect()
+    let gains = means.iter().map(|(frames, films)| (*frames, one / (f64::from(*frames) * variance(films))));
+    gains.filter(|(_, gain)| gain.is_finite()).collect()
 }
 
 /// Every film less the mean over films.

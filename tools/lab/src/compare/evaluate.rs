@@ -107,17 +107,24 @@ impl Rounds<'_> {
 
     fn passes(&self, cell: usize, passes: &[(String, bool)]) -> Vec<PassShare> {
         let ms = |pass: usize| {
-            let times: Vec<f64> = self.rounds.iter().filter_map(|round| round.runs[cell][0].passes.get(pass).copied()).collect();
+            let times: Vec<f64> = self.rounds.iter().filter_map(|round| *round.runs[cell][0].passes.get(pass)?).collect();
             median(&times)
         };
         let share = |(index, (pass, counted)): (usize, &(String, bool))| PassShare { pass: pass.clone(), ms: ms(index), counted: *counted };
-        passes.iter().enumerate().map(share).collect()
+        passes.iter().enumerate().map(share).filter(|share| share.ms.is_finite()).collect()
     }
 
     /// A cell at one take, as a point of a curve.
     pub fn point(&self, cell: usize, take: usize, figures: Cell, animation_time: f32) -> Point {
         let frame = self.rounds.first().map_or(0, |round| round.runs[cell][0].takes[take].frame);
-        Point { frame, time_ms: figures.time_ms.median, animation_time, mse: figures.mse, rel_mse: figures.rel_mse }
+        Point {
+            frame,
+            time_ms: figures.time_ms.median,
+            times_ms: figures.time_ms.values,
+            animation_time,
+            mse: figures.mse,
+            rel_mse: figures.rel_mse,
+        }
     }
 
     /// The films of the offer that weighs most.

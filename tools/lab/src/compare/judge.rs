@@ -40,18 +40,30 @@ fn pair(cells: &[Cell], baseline: usize, other: usize, names: &[String]) -> Opti
     let (a, b) = (&cells[baseline], &cells[other]);
     let time = ratio(&b.time_ms, &a.time_ms);
     let mse = ratio(&a.mse, &b.mse);
-    let mse_time = Ratio { value: mse.value / time.value, interval: mse.interval.map(|ends| ends.map(|end| end / time.value)) };
+    let mse_time = ratio(&Summary::of(error_times_time(a)), &Summary::of(error_times_time(b)));
     if ![time.value, mse.value, mse_time.value].into_iter().all(f64::is_finite) {
         return None;
     }
     let equal_time = (time.value - 1.0).abs() <= EQUAL_TIME;
     // Where times differ, error × time is what can be compared.
-    let (scale, measure) = if equal_time { (1.0, mse) } else { (time.value, mse_time) };
-    let scaled: Vec<f64> = b.mse.values.iter().map(|value| value * scale).collect();
-    let (p, better) = verdict(&a.mse.values, &scaled);
+    let measure = if equal_time { mse } else { mse_time };
+    let judged = |cell: &Cell| if equal_time { cell.mse.values.clone() } else { error_times_time(cell) };
+    let (p, better) = verdict(&judged(a), &judged(b));
     let sentence = sentence(better, measure, (&names[a.graph], &names[b.graph]), equal_time, time.value);
     let rel_mse = a.rel_mse.as_ref().zip(b.rel_mse.as_ref()).map(|(a, b)| ratio(a, b)).filter(|ratio| ratio.value.is_finite());
     Some(Pair { baseline, other, time, equal_time, mse, rel_mse, mse_time, p, better, sentence })
+}
+
+/// Error × time of every seed: what times vary by counts as much as what errors do.
+fn error_times_time(cell: &Cell) -> Vec<f64> {
+    cell.mse.values.iter().zip(&cell.time_ms.values).map(|(mse, ms)| mse * ms).collect()
+}
+
+/// Cells that no other beats in both error and time.
+pub fn front(cells: &[Cell]) -> Vec<usize> {
+    let key = |cell: &Cell| (cell.time_ms.median, cell.mse.median);
+    let beats = |(time, error): (f64, f64), (t, e): (f64, f64)| time <= t && error <= e && (time < t || error < e);
+    (0..cells.len()).filter(|&index| !cells.iter().any(|other| beats(key(other), key(&cells[index])))).collect()
 }
 
 /// Whose errors are smaller: the p-value of "neither's", and the verdict.
@@ -131,6 +143,15 @@ mod tests {
         assert!(!pair.equal_time && pair.better == Better::Baseline, "{pair:?}");
         assert!((pair.time.value - 4.0).abs() < 0.2 && pair.mse.value > 1.5 && pair.mse_time.value < 0.7);
         assert!(pair.sentence.contains("times are not equal"), "{}", pair.sentence);
+    }
+
+    #[test]
+    fn the_front_is_what_none_beats() {
+        let cell = |ms: f64, mse: f64| {
+            let summary = |median| Summary { median, ..Summary::default() };
+            Cell { time_ms: summary(ms), mse: summary(mse), ..Cell::default() }
+        };
+        assert_eq!(front(&[cell(1.0, 4.0), cell(2.0, 4.0), cell(2.0, 2.0), cell(3.0, 3.0), cell(2.0, 2.0)]), [0, 2, 4]);
     }
 
     #[test]

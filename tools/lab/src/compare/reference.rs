@@ -60,6 +60,8 @@ pub struct Content<'a> {
     pub environment: Option<&'a str>,
     /// Name of the camera.
     pub camera: &'a str,
+    /// Of the program, for the film's attributes; no part of the name.
+    pub version: &'a str,
 }
 
 impl Tracer {
@@ -163,7 +165,7 @@ impl Reference {
             transport: self.transport.to_string(),
             runs: Runs::one(FIRST_SEED + u64::from(chunk), 0, u64::from(tracer.frames)),
             adapter: stage.context.adapter().name.clone(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: content.version.to_owned(),
         };
         let more = Film { facts: Some(facts), ..film };
         let film = match &self.film {

@@ -4,10 +4,14 @@
 //! absent is undefined (a relative error of a black image, an interval of one value), never zero.
 
 mod bias;
+mod explained;
 mod pair;
+mod reach;
 
-pub use bias::{BiasFigures, BiasVerdict, Correlation, SwitchShare};
+pub use bias::{BiasFigures, BiasVerdict, Correlation};
+pub use explained::{Explained, Share, SwitchShare};
 pub use pair::{Better, Pair, Ratio};
+pub use reach::{EqualError, Reach};
 
 use super::summary::Summary;
 use serde::{Deserialize, Serialize};
@@ -168,6 +172,12 @@ pub struct SceneResult {
     pub cells: Vec<Cell>,
     /// Every graph against the baseline.
     pub pairs: Vec<Pair>,
+    /// Time of each graph to the same error; `None` where budgets do not grow.
+    #[serde(default)]
+    pub equal_error: Option<EqualError>,
+    /// Biased graphs whose bias was asked about.
+    #[serde(default)]
+    pub explained: Vec<Explained>,
 }
 
 /// What is taken for the truth.
@@ -187,6 +197,9 @@ pub struct ReferenceFacts {
     pub rel_variance: f64,
     /// `variance` over the smallest MSE measured against it: how much of the smallest error is the reference's.
     pub share: Option<f64>,
+    /// The smallest error measured is wholly within its noise.
+    #[serde(default)]
+    pub hides: bool,
     /// No light at all: relative metrics are undefined.
     pub black: bool,
 }
@@ -257,6 +270,9 @@ pub struct Point {
     pub frame: u32,
     /// Milliseconds until here (accumulate), or of this frame (trace).
     pub time_ms: f64,
+    /// The same of every seed.
+    #[serde(default)]
+    pub times_ms: Vec<f64>,
     /// Seconds into the animation.
     pub animation_time: f32,
     /// Mean square error, the reference's variance taken out.

@@ -6,10 +6,12 @@ use super::{
     correlation::{accumulation_gain, correlation},
     error::CompareError,
     evaluate::{Rounds, Truth, cell_name},
+    explain::Question,
     further, judge,
     observer::Observer,
+    reach::equal_error,
     reference::{Content, Reference, Tracer, shaders},
-    report::{BiasFigures, Cell, Correlation, Protocol, ReferenceFacts, SceneResult},
+    report::{BiasFigures, Cell, Correlation, Explained, Protocol, ReferenceFacts, SceneResult},
     store::{Round, Store, make_folder},
     subject::Stage,
     summary::median,
@@ -19,7 +21,10 @@ use crate::{
     stats::{ensemble::Ensemble, error::EPSILON},
 };
 use aquifer_graph::{Document, Transport};
-use std::path::PathBuf;
+use std::{
+    path::PathBuf,
+    time::{Duration, Instant},
+};
 
 /// What a comparison was asked for.
 #[derive(Clone, Debug)]
@@ -40,6 +45,12 @@ pub struct Request {
     pub cache: PathBuf,
     /// Where everything else goes.
     pub folder: PathBuf,
+    /// Ask of every biased graph which of its switches does how much.
+    pub explain_bias: bool,
+    /// The mean square error to be reached, where budgets grow; `None`: what all graphs reach.
+    pub equal_error: Option<f64>,
+    /// Of the program.
+    pub version: String,
 }
 
 /// Frames that temporal correlation looks back.
@@ -70,7 +81,7 @@ pub struct Compared {
     pub warnings: Vec<String>,
     /// Seconds of rendering what was measured.
     pub seconds: f64,
-    /// Seconds of films and files meanwhile.
+    /// Seconds of everything else but references: films read back and kept, errors, statistics.
     pub lab_seconds: f64,
     /// Who held the watch.
     pub clock: aquifer_render::Clock,
@@ -92,15 +103,54 @@ pub fn compare_scene(
     let settled = bench.settle(observer)?;
     let rounds = measure(&mut bench, &settled, &store, request.protocol.seeds(), &facts.name, observer)?;
     let measured = Rounds { store: &store, settled: &settled, rounds: &rounds };
-    let mut scene = Scene { stage, entrants, facts, request, bench: &bench, measured, warnings: Vec::new() };
-    let result = scene.evaluate(observer)?;
-    Ok(Compared {
-        result,
-        warnings: scene.warnings,
-        seconds: rounds.iter().map(|round| round.seconds).sum(),
-        lab_seconds: rounds.iter().map(|round| round.lab_seconds).sum(),
-        clock: bench.as_written(0).clock(),
-    })
+    let mut scene =
+        Scene { stage, entrants, facts, request, bench: &bench, measured, warnings: Vec::new(), reference_time: Duration::ZERO };
+    let began = Instant::now();
+    let mut result = scene.evaluate(observer)?;
+    let evaluation = began.elapsed().saturating_sub(scene.reference_time);
+    let warnings = scene.warnings;
+    let mut spent = spent(&rounds);
+    spent.1 += evaluation.as_secs_f64();
+    if request.explain_bias {
+        let (explained, asked) = explain_bias(stage, entrants, facts, request, &result, observer)?;
+        result.explained = explained;
+        spent = (spent.0 + asked.0, spent.1 + asked.1);
+    }
+    Ok(Compared { result, warnings, seconds: spent.0, lab_seconds: spent.1, clock: bench.as_written(0).clock() })
+}
+
+/// Seconds of rendering and of everything else.
+fn spent(rounds: &[Round]) -> (f64, f64) {
+    rounds.iter().fold((0.0, 0.0), |(seconds, lab), round| (seconds + round.seconds, lab + round.lab_seconds))
+}
+
+/// Every biased graph's switches turned one by one, and what that cost.
+fn explain_bias(
+    stage: &Stage,
+    entrants: &[Entrant],
+    facts: &SceneFacts,
+    request: &Request,
+    result: &SceneResult,
+    observer: &mut dyn Observer,
+) -> Result<(Vec<Explained>, (f64, f64)), CompareError> {
+    let (mut explained, mut cost) = (Vec::new(), (0.0, 0.0));
+    for (graph, entrant) in entrants.iter().enumerate() {
+        let Some(question) = Question::new(graph, entrant, &stage.graph(&entrant.document, None)?.bias())? else { continue };
+        let name = state_name(stage, &question.entrants, facts, request)?;
+        let store = Store::open(request.folder.join("measured").join(format!("{name}-explained")))?;
+        let mut bench = Bench::new(stage, &question.entrants, request.protocol, None, request.seed, &store)?;
+        let settled = question.settled();
+        let what = format!("{}, bias of {}", facts.name, entrant.name);
+        let rounds = measure(&mut bench, &settled, &store, request.protocol.seeds(), &what, observer)?;
+        let began = Instant::now();
+        let reference = result.cells.iter().find(|cell| cell.graph == graph).map(|cell| &result.references[cell.reference]);
+        let Some(reference) = reference.filter(|reference| !reference.black) else { continue };
+        let reference = Film::read(&request.folder.join(&reference.image))?;
+        explained.push(question.answer(&Rounds { store: &store, settled: &settled, rounds: &rounds }, &reference)?);
+        let (seconds, lab) = spent(&rounds);
+        cost = (cost.0 + seconds, cost.1 + lab + began.elapsed().as_secs_f64());
+    }
+    Ok((explained, cost))
 }
 
 /// Names what is measured: another graph, scene, size, protocol, seed, adapter or shader is another folder.
@@ -138,7 +188,7 @@ fn measure(
     let mut rounds = Vec::new();
     for number in 0..seeds {
         observer.progress(&format!("{scene}: rounds of all graphs"), number.into(), seeds.into());
-        rounds.push(match store.round(number) {
+        rounds.push(match store.round(number).filter(|round| round.fits(settled)) {
             Some(round) => round,
             None => bench.round(number, settled, observer)?,
         });
@@ -154,6 +204,8 @@ struct Scene<'a> {
     bench: &'a Bench<'a>,
     measured: Rounds<'a>,
     warnings: Vec<String>,
+    /// Spent on references, which later comparisons find made.
+    reference_time: Duration,
 }
 
 impl Scene<'_> {
@@ -180,6 +232,9 @@ impl Scene<'_> {
         self.write_images(&mut result.cells, &result.references)?;
         let names: Vec<String> = self.entrants.iter().map(|entrant| entrant.name.clone()).collect();
         result.pairs = judge::pairs(&result.cells, &names);
+        if let Protocol::Accumulate { .. } = self.request.protocol {
+            result.equal_error = equal_error(&result.cells, &names, self.request.equal_error);
+        }
         self.warn_of(&result);
         Ok(result)
     }
@@ -270,10 +325,12 @@ impl Scene<'_> {
             films[0].write(&self.images().join(&one))?;
             mean.film().write(&self.images().join(&all))?;
             (cell.image, cell.mean_image) = (Some(self.image_name(&one)), Some(self.image_name(&all)));
-            let reference = Film::read(&self.request.folder.join(&references[cell.reference].image))?;
-            if films.len() < 2 {
+            let facts = &references[cell.reference];
+            // One seed has no variance, and nothing is relative to black.
+            if films.len() < 2 || facts.black {
                 continue;
             }
+            let reference = Film::read(&self.request.folder.join(&facts.image))?;
             let t_map = format!("{name}.t.exr");
             t_values(&mean.film(), &reference).write(&self.images().join(&t_map))?;
             cell.bias = Some(BiasFigures { t_map: Some(self.image_name(&t_map)), ..bias(&films, &reference)? });
@@ -307,13 +364,15 @@ impl Scene<'_> {
             if reference.black {
                 self.warnings.push(format!("{scene}: the reference holds no light: relative metrics are undefined"));
             }
-            if let Some(share) = reference.share.filter(|share| *share > self.request.reference_share) {
-                self.warnings.push(format!(
-                    "{scene}: the reference's own variance is {} of the smallest error after {} samples: --reference-samples allows more",
-                    percent(share),
-                    reference.samples
-                ));
-            }
+            let share = match reference.share {
+                _ if reference.hides => "more than all".to_owned(),
+                Some(share) if share > self.request.reference_share => format!("{:.0} %", 100.0 * share),
+                _ => continue,
+            };
+            self.warnings.push(format!(
+                "{scene}: the reference's own variance is {share} of the smallest error after {} samples: --reference-samples allows more",
+                reference.samples
+            ));
         }
         for pair in result.pairs.iter().filter(|pair| !pair.equal_time) {
             let name = |cell: usize| &self.entrants[result.cells[cell].graph].name;
@@ -345,9 +404,12 @@ impl Scene<'_> {
         observer: &mut dyn Observer,
     ) -> Result<(Film, ReferenceFacts), CompareError> {
         let request = self.request;
+        let began = Instant::now();
         let mut tracer = Tracer::new(self.stage, &request.path_tracer, transport, time)?;
+        self.reference_time += began.elapsed();
         let facts = self.facts;
-        let content = Content { scene: &facts.content, environment: facts.environment.as_deref(), camera: &facts.camera };
+        let environment = facts.environment.as_deref();
+        let content = Content { scene: &facts.content, environment, camera: &facts.camera, version: &request.version };
         let mut reference = Reference::open(&request.cache, self.stage, &tracer, &content, time, observer);
         let mut wanted = reference.samples().max(1);
         loop {
@@ -356,16 +418,18 @@ impl Scene<'_> {
                     return Err(CompareError::Interrupted);
                 }
                 observer.progress(&format!("{}: reference ({transport})", facts.name), reference.samples(), wanted);
+                let began = Instant::now();
                 reference.extend(self.stage, &mut tracer, &content)?;
+                self.reference_time += began.elapsed();
             }
             let film = reference.film().expect("at least one chunk was rendered").clone();
             let figures = self.facts_of(&reference, &film, at)?;
-            let enough = figures.share.is_none_or(|share| share <= request.reference_share);
+            let enough = !figures.hides && figures.share.is_none_or(|share| share <= request.reference_share);
             if enough || reference.samples() >= request.reference_samples {
                 return Ok((film, figures));
             }
             // Variance falls as 1/samples; a tenth more makes up for what the estimate of the error may still lack.
-            let more = figures.share.unwrap_or(1.0) / request.reference_share * 1.1;
+            let more = figures.share.unwrap_or(f64::INFINITY) / request.reference_share * 1.1;
             wanted = (reference.samples() as f64 * more.min(64.0)).ceil() as u64;
         }
     }
@@ -385,8 +449,7 @@ impl Scene<'_> {
             let errors = self.measured.errors(cell, take, film)?;
             least = errors.iter().map(|seeds| median(&seeds.iter().map(|error| error.mse).collect::<Vec<_>>())).fold(least, f64::min);
         }
-        // An error that the reference's noise hides wholly has no share: it is more than all.
-        let share = (variance > 0.0).then(|| if least > 0.0 { variance / least } else { f64::MAX });
+        let hides = variance > 0.0 && least <= 0.0;
         Ok(ReferenceFacts {
             transport: reference.transport().to_string(),
             image: String::new(),
@@ -394,7 +457,8 @@ impl Scene<'_> {
             samples: reference.samples(),
             variance,
             rel_variance,
-            share,
+            share: (variance > 0.0 && !hides).then_some(variance / least),
+            hides,
             black,
         })
     }
@@ -403,8 +467,4 @@ impl Scene<'_> {
 /// A name that any file system takes.
 fn file_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '_' }).collect()
-}
-
-fn percent(share: f64) -> String {
-    if share >= 10.0 { "more than 1000 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }

@@ -53,8 +53,8 @@ pub struct Round {
 pub struct Run {
     /// In order of time: one in the protocol of the frame, several in the others.
     pub takes: Vec<Take>,
-    /// Median milliseconds of each pass over the frames that counted.
-    pub passes: Vec<f64>,
+    /// Median milliseconds of each pass over the frames that counted; `None` where the clock ran backwards in all of them.
+    pub passes: Vec<Option<f64>>,
 }
 
 /// A film with its cost.
@@ -68,6 +68,23 @@ pub struct Take {
     pub film: String,
     /// Of the file.
     pub hash: String,
+}
+
+impl Settled {
+    /// Can these be cells of so many graphs?
+    pub fn fits(&self, graphs: usize) -> bool {
+        let budgets = |cell: &SettledCell| cell.budget.is_none_or(|(ms, of)| ms > 0.0 && of.is_none_or(|of| of < graphs));
+        !self.cells.is_empty() && self.cells.iter().all(|cell| cell.graph < graphs && !cell.offers.is_empty() && budgets(cell))
+    }
+}
+
+impl Round {
+    /// Holds what was settled, no more and no less.
+    pub fn fits(&self, settled: &Settled) -> bool {
+        let runs =
+            |(runs, cell): (&Vec<Run>, &SettledCell)| runs.len() == cell.offers.len() && runs.iter().all(|run| !run.takes.is_empty());
+        self.runs.len() == settled.cells.len() && self.runs.iter().zip(&settled.cells).all(runs)
+    }
 }
 
 const SETTLED: &str = "settled.json";
@@ -170,11 +187,19 @@ mod tests {
         let film = Film::new([2, 1], vec![[0.5; 3]; 2]).unwrap();
         let (film, hash) = store.keep_film("a.exr".into(), &film).unwrap();
         let take = Take { frame: 1, ms: 2.0, film, hash };
-        let round = Round { runs: vec![vec![Run { takes: vec![take.clone()], passes: vec![2.0] }]], ..Round::default() };
+        let round = Round { runs: vec![vec![Run { takes: vec![take.clone()], passes: vec![Some(2.0)] }]], ..Round::default() };
         assert_eq!(store.round(0), None);
         store.keep_round(0, &round).unwrap();
         assert_eq!(store.round(0).as_ref(), Some(&round));
         assert_eq!(store.film(&take).unwrap().color, [[0.5; 3]; 2]);
+        let cell = |graph| SettledCell { graph, budget: None, offers: vec![Offer { knob: None, frames: 1 }] };
+        let settled = |cells: Vec<SettledCell>| Settled { cells, ..Settled::default() };
+        assert!(
+            round.fits(&settled(vec![cell(0)]))
+                && !round.fits(&settled(vec![cell(0), cell(1)]))
+                && !Round::default().fits(&settled(vec![cell(0)]))
+        );
+        assert!(settled(vec![cell(1)]).fits(2) && !settled(vec![cell(2)]).fits(2) && !settled(vec![]).fits(2));
         let path = folder.path().join("s/a.exr");
         let mut bytes = fs::read(&path).unwrap();
         *bytes.last_mut().unwrap() ^= 1;

@@ -5,7 +5,7 @@ use crate::{capture::Capture, film::Film};
 use aquifer_graph::{Document, Graph, NeedsAll, PortId, Source, Value};
 use aquifer_render::{Clock, Context, Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::Scene;
-use std::{collections::BTreeSet, sync::Arc};
+use std::{collections::BTreeSet, sync::Arc, time::Instant};
 
 /// Where graphs are measured.
 pub struct Stage {
@@ -43,6 +43,8 @@ pub struct Shot {
     pub film: Film,
     /// Milliseconds of each pass, in order of execution; `None` where the clock ran backwards.
     pub passes: Vec<Option<f64>>,
+    /// Milliseconds by the wall, until the device was done.
+    pub wall_ms: f64,
 }
 
 /// A graph on a device.
@@ -128,7 +130,7 @@ impl Subject {
         counted.map(|(ms, _)| *ms).sum()
     }
 
-    /// Begins anew with `seed`, renders, and shows each frame that counts.
+    /// Begins anew with `seed`, renders, and shows each frame that counts; the seconds of rendering, without what was read back and shown.
     ///
     /// # Errors
     /// What the device refuses, and what `show` returns.
@@ -137,22 +139,28 @@ impl Subject {
         seed: u64,
         schedule: Schedule,
         mut show: impl FnMut(u32, &Self, Shot) -> Result<(), CompareError>,
-    ) -> Result<(), CompareError> {
+    ) -> Result<f64, CompareError> {
+        let began = Instant::now();
         self.renderer.reseed(seed)?;
         for _ in 0..schedule.warm_up {
             self.renderer.frame()?;
         }
         self.renderer.finish()?;
+        let mut rendering = began.elapsed();
         for frame in 0..schedule.frames {
             let dropped = self.renderer.timings().dropped;
+            let began = Instant::now();
             self.renderer.frame()?;
+            self.renderer.finish()?;
+            let wall = began.elapsed();
+            rendering += wall;
             let film = self.capture.last_frame(&self.graph, &mut self.renderer)?;
             let timings = self.renderer.timings();
             let sound = timings.dropped == dropped;
             let passes = timings.passes.iter().map(|pass| pass.latest_ms.filter(|_| sound)).collect();
-            show(frame, self, Shot { film, passes })?;
+            show(frame, self, Shot { film, passes, wall_ms: 1e3 * wall.as_secs_f64() })?;
         }
-        Ok(())
+        Ok(rendering.as_secs_f64())
     }
 
     /// The smallest and largest value of the knob, from its parameter's range and type; `None` without a knob.

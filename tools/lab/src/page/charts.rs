@@ -1,7 +1,7 @@
 //! Points of the plots: the script draws them, this says which there are.
 
 use crate::compare::{
-    report::{Cell, Point, Protocol, SceneResult},
+    report::{Cell, Point, Protocol, Reach, SceneResult},
     summary::Summary,
 };
 use serde::Serialize;
@@ -32,6 +32,16 @@ pub(super) struct Lag {
     graph: usize,
     lag: usize,
     value: f64,
+}
+
+/// When a graph reaches the error that all are asked for.
+#[derive(Debug, Serialize)]
+pub(super) struct Reached {
+    graph: usize,
+    time: f64,
+    low: f64,
+    high: f64,
+    at_once: bool,
 }
 
 fn band(summary: &Summary) -> [f64; 3] {
@@ -85,6 +95,16 @@ pub(super) fn curve(scene: &SceneResult) -> Vec<Measured> {
     points
 }
 
+/// Graphs that reach the error of equal error.
+pub(super) fn reached(scene: &SceneResult) -> Vec<Reached> {
+    let reach = |reach: &Reach| {
+        let time = reach.time_ms?;
+        let [low, high] = reach.interval.unwrap_or([time; 2]);
+        Some(Reached { graph: scene.cells.get(reach.cell)?.graph, time, low, high, at_once: reach.at_once })
+    };
+    scene.equal_error.iter().flat_map(|found| &found.reaches).filter_map(reach).collect()
+}
+
 /// Graphs of the scene, once each.
 pub(super) fn graphs(scene: &SceneResult) -> Vec<usize> {
     let mut graphs: Vec<usize> = scene.cells.iter().map(|cell| cell.graph).collect();
@@ -100,15 +120,17 @@ const TIME: Chart = Chart {
 };
 const FRAME: Chart = Chart { kind: "frame", title: "Error of each frame", about: "medians, 95 % bands" };
 const PARETO: Chart = Chart { kind: "pareto", title: "Pareto front", about: "every graph and budget; filled: beaten by none in both" };
+const REACH: Chart = Chart { kind: "reach", title: "Time to equal error", about: "95 % intervals; open: less, its first frame is there" };
 const TEMPORAL: Chart = Chart { kind: "temporal", title: "Between frames", about: "covariance over variance; 0: independent" };
 const SPATIAL: Chart = Chart { kind: "spatial", title: "Between pixels", about: "covariance over variance; 0: independent" };
 
 /// The plots that have something to show beyond each other.
 pub(super) fn of_errors(protocol: &Protocol, scene: &SceneResult) -> Vec<Chart> {
-    let several = scene.cells.len() > graphs(scene).len() || scene.cells.iter().any(|cell| !cell.curve.is_empty());
+    let several = scene.cells.len() > graphs(scene).len().min(2) || scene.cells.iter().any(|cell| !cell.curve.is_empty());
     match protocol {
         _ if scene.cells.is_empty() => vec![],
         Protocol::Trace { .. } => vec![FRAME, PARETO],
+        _ if !reached(scene).is_empty() => vec![TIME, PARETO, REACH],
         _ if several => vec![TIME, PARETO],
         _ => vec![TIME],
     }
@@ -148,7 +170,9 @@ mod tests {
         assert_eq!(points, [(0, 0.0), (0, 1.0), (0, 2.0), (1, 4.0), (1, 9.0)]);
         let kinds = |scene: &SceneResult| of_errors(&Protocol::default(), scene).iter().map(|chart| chart.kind).collect::<Vec<_>>();
         assert_eq!(kinds(&scene), ["time", "pareto"]);
-        assert_eq!(kinds(&SceneResult { cells: vec![cell(0, 1.0, 0), cell(1, 1.0, 0)], ..SceneResult::default() }), ["time"]);
+        let sweep = |n: usize| SceneResult { cells: (0..n).map(|graph| cell(graph, 1.0, 0)).collect(), ..SceneResult::default() };
+        assert_eq!(kinds(&sweep(2)), ["time"]);
+        assert_eq!(kinds(&sweep(3)), ["time", "pareto"], "a sweep has a front");
         assert!(kinds(&SceneResult::default()).is_empty());
     }
 }

@@ -2,14 +2,17 @@
 
 use super::{
     PageError,
-    charts::{self, Chart, Lag, Measured},
+    charts::{self, Chart, Lag, Measured, Reached},
     passes::{self, Bar, Line},
     picture::{self, Payload, Store},
     verdict::{self, Verdict},
     words::{self, number},
 };
 use crate::{
-    compare::report::{BiasFigures, Correlation, Ratio, Report, SceneResult, SwitchShare},
+    compare::{
+        judge,
+        report::{BiasFigures, Correlation, Ratio, Report, SceneResult},
+    },
     film::Film,
     metrics::Metric,
 };
@@ -55,6 +58,8 @@ pub(super) struct Scene {
     charts: Vec<Chart>,
     both_errors: bool,
     metrics: Vec<MetricHead>,
+    /// Indices of cells that no other beats; empty where there is little to choose from.
+    front: Vec<usize>,
     passes: Vec<Bar>,
     pass_table: Vec<Line>,
     bias: Vec<BiasRow>,
@@ -78,6 +83,9 @@ pub(super) struct Data {
     cells: Vec<Measured>,
     temporal: Vec<Lag>,
     spatial: Vec<Lag>,
+    reach: Vec<Reached>,
+    /// The error of `reach`.
+    reached: Option<f64>,
 }
 
 /// An image of the viewer: ids of payloads, the first picture being the reference.
@@ -105,14 +113,6 @@ struct BiasRow {
     mean: String,
     share: String,
     figures: BiasFigures,
-    switches: Vec<SwitchRow>,
-}
-
-#[derive(Debug, Serialize)]
-struct SwitchRow {
-    what: String,
-    mean: String,
-    bias_squared: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -180,6 +180,7 @@ impl Scene {
             charts: charts::of_errors(&report.protocol, result),
             both_errors: !black,
             metrics: metric_heads(result),
+            front: if result.cells.len() > 2 { judge::front(&result.cells) } else { vec![] },
             passes,
             pass_table,
             bias: bias_rows(result),
@@ -196,6 +197,8 @@ impl Scene {
                 cells: charts::cells(result),
                 temporal,
                 spatial,
+                reach: charts::reached(result),
+                reached: result.equal_error.as_ref().map(|found| found.mse),
             },
             result: result.clone(),
             pictures,
@@ -251,11 +254,6 @@ fn metric_heads(scene: &SceneResult) -> Vec<MetricHead> {
 fn bias_rows(scene: &SceneResult) -> Vec<BiasRow> {
     let row = |(graph, figures): (usize, &BiasFigures)| {
         let (kind, mark) = verdict::bias_kind(figures.verdict);
-        let switch = |switch: &SwitchShare| SwitchRow {
-            what: switch.what.clone(),
-            mean: verdict::mean(switch.mean_difference, switch.mean_error),
-            bias_squared: switch.bias_squared,
-        };
         let share = figures.bias_squared.max(0.0) / (figures.bias_squared.max(0.0) + figures.variance);
         BiasRow {
             graph,
@@ -263,7 +261,6 @@ fn bias_rows(scene: &SceneResult) -> Vec<BiasRow> {
             mark,
             mean: verdict::mean(figures.mean_difference, figures.mean_error),
             share: format!("{} %", number(100.0 * share)),
-            switches: figures.switches.iter().map(switch).collect(),
             figures: figures.clone(),
         }
     };

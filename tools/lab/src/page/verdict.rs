@@ -1,7 +1,7 @@
 //! The result in words.
 
 use super::words::{number, signed_percent};
-use crate::compare::report::{Better, BiasFigures, BiasVerdict, Cell, Pair, Ratio, Report, SceneResult};
+use crate::compare::report::{Better, BiasFigures, BiasVerdict, Cell, Pair, Ratio, Reach, Report, SceneResult};
 use serde::Serialize;
 
 /// What is said of one graph.
@@ -31,6 +31,7 @@ pub(super) fn of(report: &Report) -> Vec<Verdict> {
         verdicts.push(Verdict { lead: alone(report), sentences: vec![] });
     }
     if let Some(last) = verdicts.last_mut() {
+        last.sentences.extend(report.scenes.iter().flat_map(equal_error));
         last.sentences.extend(graphs.filter_map(|graph| bias(report, graph)));
     }
     verdicts
@@ -107,6 +108,21 @@ fn sentences(report: &Report, graph: usize) -> Vec<Item> {
         Item { kind, mark, text: format!("{}: {}", scene.name, pair.sentence) }
     };
     pairs.iter().map(item).collect()
+}
+
+/// Who reaches the same error sooner.
+fn equal_error(scene: &SceneResult) -> Vec<Item> {
+    let Some(found) = &scene.equal_error else { return vec![] };
+    let item = |reach: &Reach| {
+        let interval = reach.speed_up?.interval;
+        let (kind, mark) = match interval {
+            Some([low, _]) if low > 1.0 => ("better", "sooner"),
+            Some([_, high]) if high < 1.0 => ("worse", "later"),
+            _ => ("open", "not resolved"),
+        };
+        Some(Item { kind, mark, text: format!("{}, MSE {}: {}", scene.name, number(found.mse), reach.sentence) })
+    };
+    found.reaches.iter().filter_map(item).collect()
 }
 
 fn alone(report: &Report) -> String {

@@ -4,8 +4,8 @@
 use aquifer_lab::{
     compare::{
         report::{
-            Better, BiasFigures, BiasVerdict, Cell, Correlation, GraphFacts, Made, Pair, PassShare, Point, Protocol, Ratio, ReferenceFacts,
-            Report, SCHEMA, SceneResult, Variant,
+            Better, BiasFigures, BiasVerdict, Cell, Correlation, EqualError, Explained, GraphFacts, Made, Pair, PassShare, Point, Protocol,
+            Ratio, Reach, ReferenceFacts, Report, SCHEMA, SceneResult, Share, SwitchShare, Variant,
         },
         summary::Summary,
     },
@@ -67,6 +67,29 @@ fn cell(graph: usize, error: f64) -> Cell {
     }
 }
 
+fn reach(cell: usize, time: f64, speed_up: Option<Ratio>) -> Reach {
+    let sentence =
+        if cell == 1 { "`second` reaches it in 37.5 ms, 4.00 times sooner than `first`" } else { "`first` reaches it in 150.0 ms" };
+    Reach { cell, time_ms: Some(time), interval: Some([0.9 * time, 1.1 * time]), at_once: false, speed_up, sentence: sentence.into() }
+}
+
+fn explained() -> Explained {
+    let share = |mean_difference: f64| Share {
+        mean_difference,
+        mean_error: 1e-3,
+        bias_squared: mean_difference.powi(2),
+        bias_squared_interval: Some([0.0, 0.5]),
+    };
+    let switch = SwitchShare {
+        what: "slot `mis` is `constant`: it loses energy".into(),
+        setting: Some("slots.mis=contribution".into()),
+        alone: Some(share(0.25)),
+        without: Some(share(0.125)),
+    };
+    let stuck = SwitchShare { what: "kind `boiling_filter`: what is hard to find darkens".into(), ..SwitchShare::default() };
+    Explained { graph: 1, seeds: 16, all_on: share(0.5), all_off: Some(share(0.0)), switches: vec![switch, stuck] }
+}
+
 /// The report; its images go to `folder`.
 pub fn report(folder: &Path) -> Report {
     for (name, factor) in [("reference.exr", 1.0), ("graph0.exr", 1.0), ("graph1.exr", FACTOR)] {
@@ -101,6 +124,8 @@ pub fn report(folder: &Path) -> Report {
         }],
         cells: vec![cell(0, 0.04), cell(1, 0.01)],
         pairs: vec![pair.clone()],
+        equal_error: Some(EqualError { mse: 0.002, reaches: vec![reach(0, 150.0, None), reach(1, 37.5, Some(ratio(4.0)))] }),
+        explained: vec![explained()],
         ..SceneResult::default()
     };
     Report {

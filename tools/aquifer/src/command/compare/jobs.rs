@@ -1,6 +1,7 @@
 //! A comparison in pieces for batch systems: one job for every graph on every scene, each at its own frame time.
 //!
-//! A job's name follows from what it does, its result is a report of its own that appears by renaming, and nothing else is shared but files.
+//! A job's name follows from what it does, the graph's text included; its result is a report of its own that appears by renaming, and nothing else
+//! is shared but files.
 
 use super::Args;
 use crate::{failure::Failure, ui::Ui};
@@ -8,8 +9,8 @@ use aquifer_lab::{
     atomic,
     compare::{
         bench::Entrant,
-        judge,
-        report::{Report, SceneResult},
+        judge, reach,
+        report::{Explained, Report, SceneResult},
     },
 };
 use std::path::PathBuf;
@@ -106,7 +107,9 @@ impl JobArgs {
 fn jobs<'a>(args: &'a Args, entrants: &'a [Entrant]) -> Vec<Job<'a>> {
     let folder = args.output.join("jobs");
     let job = |scene: &'a str, entrant: &'a Entrant| {
-        let what = format!("{scene} {} {:?} {:?} {:?} {}", entrant.name, entrant.settings, args.size, args.protocol(), args.seed);
+        let place = (scene, &args.environment, &args.camera, args.animation_time, args.step, args.size);
+        let what = format!("{place:?} {:?} {:?} {:?} {:?}", entrant.name, args.protocol(), args.budget, (args.seed, args.explain_bias));
+        let what = format!("{what} {:?}", entrant.document);
         let id = blake3::hash(what.as_bytes()).to_hex()[..12].to_owned();
         Job { path: folder.join(format!("{id}.json")), id, scene, entrant }
     };
@@ -143,7 +146,10 @@ fn merge(args: &Args, entrants: &[Entrant], jobs: &[Job<'_>]) -> Result<Report, 
         add(&mut merged.scenes, scene, graph);
     }
     let names: Vec<String> = merged.graphs.iter().map(|graph| graph.name.clone()).collect();
-    merged.scenes.iter_mut().for_each(|scene| scene.pairs = judge::pairs(&scene.cells, &names));
+    for scene in &mut merged.scenes {
+        scene.pairs = judge::pairs(&scene.cells, &names);
+        scene.equal_error = reach::equal_error(&scene.cells, &names, args.equal_error);
+    }
     Ok(merged)
 }
 
@@ -157,11 +163,12 @@ fn read(job: &Job<'_>) -> Result<Report, Failure> {
 fn add(scenes: &mut Vec<SceneResult>, job: SceneResult, graph: usize) {
     let mut job = job;
     let at = scenes.iter().position(|scene| scene.name == job.name).unwrap_or_else(|| {
-        scenes.push(SceneResult { cells: Vec::new(), references: Vec::new(), pairs: Vec::new(), ..job.clone() });
+        scenes.push(SceneResult { cells: vec![], references: vec![], pairs: vec![], explained: vec![], ..job.clone() });
         scenes.len() - 1
     });
     let first = scenes[at].references.len();
     scenes[at].references.append(&mut job.references);
+    scenes[at].explained.extend(job.explained.into_iter().map(|explained| Explained { graph, ..explained }));
     scenes[at].cells.extend(job.cells.into_iter().map(|mut cell| {
         cell.graph = graph;
         cell.reference += first;

@@ -1,7 +1,8 @@
 //! A report in a few lines for people.
 
 use aquifer_lab::compare::{
-    report::{Cell, Report, SceneResult},
+    judge,
+    report::{Cell, Explained, Made, Report, SceneResult, Share},
     summary::Summary,
 };
 use aquifer_render::Clock;
@@ -21,10 +22,52 @@ pub fn report(report: &Report) -> String {
         lines.push(format!("{}, {}×{}, {}", scene.name, scene.size[0], scene.size[1], scene.camera));
         lines.extend(scene.pairs.iter().map(|pair| format!("  {}", pair.sentence)));
         lines.extend(table(report, scene));
+        lines.extend(front(report, scene));
+        lines.extend(equal_error(scene));
+        lines.extend(scene.explained.iter().flat_map(|explained| explanation(report, explained)));
         lines.push(String::new());
     }
     lines.push(format!("times by {} on {}", report.made.clock, report.made.adapter));
     lines.join("\n")
+}
+
+/// What the measuring itself cost.
+pub fn overhead(made: &Made, page_seconds: f64) -> String {
+    let lab = made.lab_seconds + page_seconds;
+    let share = 100.0 * lab / made.measured_seconds.max(f64::MIN_POSITIVE);
+    format!("{:.1} s of rendering measured; films, errors, statistics and the page took {lab:.1} s, {share:.1} %", made.measured_seconds)
+}
+
+/// Who is on the Pareto front, where more than two could be.
+fn front(report: &Report, scene: &SceneResult) -> Option<String> {
+    let names = judge::front(&scene.cells).into_iter().map(|cell| {
+        let cell = &scene.cells[cell];
+        format!("{} ({:.3} ms)", report.graphs[cell.graph].name, cell.time_ms.median)
+    });
+    (scene.cells.len() > 2).then(|| format!("  beaten by none in both error and time: {}", names.collect::<Vec<_>>().join(", ")))
+}
+
+fn equal_error(scene: &SceneResult) -> Vec<String> {
+    let Some(found) = &scene.equal_error else { return Vec::new() };
+    let head = format!("  mean square error {:.3e}:", found.mse);
+    std::iter::once(head).chain(found.reaches.iter().map(|reach| format!("    {}", reach.sentence))).collect()
+}
+
+/// The bias of a graph by its switches.
+fn explanation(report: &Report, explained: &Explained) -> Vec<String> {
+    let share = |share: &Option<Share>| match share {
+        Some(share) => format!("{:+.2} ± {:.2} %", 100.0 * share.mean_difference, 100.0 * share.mean_error),
+        None => "cannot be told".to_owned(),
+    };
+    let mut lines = vec![
+        format!("  bias of {}, mean against the reference:", report.graphs[explained.graph].name),
+        format!("    as written {}, all off {}", share(&Some(explained.all_on.clone())), share(&explained.all_off)),
+    ];
+    for switch in &explained.switches {
+        let how = switch.setting.as_deref().map_or("no setting turns it off".to_owned(), |setting| format!("off: {setting}"));
+        lines.push(format!("    alone {}, without it {}: {} ({how})", share(&switch.alone), share(&switch.without), switch.what));
+    }
+    lines
 }
 
 fn table(report: &Report, scene: &SceneResult) -> Vec<String> {

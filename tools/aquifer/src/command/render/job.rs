@@ -6,7 +6,7 @@ use crate::{
     failure::Failure,
     interrupt,
     progress::{Goal, Progress, State},
-    source::text_of,
+    source::{GraphArgs, text_of},
     ui::Ui,
 };
 use aquifer_graph::{Graph, NeedsAll, Plan, Source};
@@ -27,6 +27,7 @@ use std::{
 /// The scene, the graph, and the renderer that holds both.
 pub struct Job<'a> {
     args: &'a Args,
+    source: GraphArgs,
     scene: Arc<Scene>,
     view: View,
     graph: Graph,
@@ -53,21 +54,22 @@ impl<'a> Job<'a> {
         let scene = Arc::new(args.scene.load(ui)?);
         let (mut graph, mut registry) = args.graph.check(Some(&scene))?;
         let edits = edits(&graph);
-        if !edits.is_empty() {
-            (graph, registry) = args.graph.check_with(Some(&scene), edits)?;
+        let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+        let source = args.graph.choosing(&context, &scene)?;
+        if !edits.is_empty() || source.settings != args.graph.settings {
+            (graph, registry) = source.check_with(Some(&scene), edits)?;
         }
         let (taken, plan) = planned(&graph)?;
-        let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
         let view = View { camera: args.camera.clone(), ..view };
         let globals = SceneGlobals::new(&context, scene.clone(), view.clone())?;
         let options = RendererOptions { size: args.size, seed: args.seed, first_frame, ..RendererOptions::default() };
         let renderer = Renderer::new(&context, &registry, plan, Box::new(globals), options)?;
-        Ok(Self { args, scene, view, graph, taken, renderer })
+        Ok(Self { args, source, scene, view, graph, taken, renderer })
     }
 
     /// Reads graph and shaders anew. When something is wrong with them, everything stays as it was.
     pub fn reload(&mut self) -> Result<(), Failure> {
-        let (graph, registry) = self.args.graph.check(Some(&self.scene))?;
+        let (graph, registry) = self.source.check(Some(&self.scene))?;
         let (taken, plan) = planned(&graph)?;
         self.renderer.replace_plan(&registry, plan)?;
         (self.graph, self.taken) = (graph, taken);

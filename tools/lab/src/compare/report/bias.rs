@@ -27,8 +27,6 @@ pub struct BiasFigures {
     pub pixels_rejected: f64,
     /// Per-pixel t values, as an EXR file.
     pub t_map: Option<String>,
-    /// Each biased switch turned on alone.
-    pub switches: Vec<SwitchShare>,
 }
 
 /// What the equivalence test says (two one-sided tests at 5 %).
@@ -42,19 +40,6 @@ pub enum BiasVerdict {
     /// More seeds are needed to say.
     #[default]
     NotResolved,
-}
-
-/// What one biased switch does by itself.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct SwitchShare {
-    /// The line, as `aquifer check` prints it.
-    pub what: String,
-    /// Mean luminance over the reference's, less one, with this switch alone.
-    pub mean_difference: f64,
-    /// Its standard error.
-    pub mean_error: f64,
-    /// Squared bias with this switch alone.
-    pub bias_squared: f64,
 }
 
 /// How much of the noise is shared.

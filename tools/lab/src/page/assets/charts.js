@@ -39,8 +39,8 @@ function logAxis(values, name) {
   return {type: "log", domain: reach, ticks: ticks(values).filter((t) => t >= reach[0] && t <= reach[1]), tickFormat: short, label: name, grid: true};
 }
 
-/** Error against time with its band, and the line that independent samples follow. */
-function errorAgainstTime(element, points, names) {
+/** Error against time with its band, the line that independent samples follow, and the error to be reached, if one is. */
+function errorAgainstTime(element, points, names, reached) {
   const usable = points.filter((p) => positive(p.time) && positive(p.error));
   if (!usable.length) return nothing(element, "No error above zero to plot.");
   const low = (p) => (positive(p.low) ? p.low : p.error), high = (p) => (positive(p.high) ? p.high : p.error);
@@ -53,6 +53,7 @@ function errorAgainstTime(element, points, names) {
     x, y,
     marks: [
       Plot.line(guides, {x: "time", y: "error", z: "graph", stroke: MUTED, strokeDasharray: "2 4", strokeOpacity: 0.8, clip: true}),
+      ...(reached ? [Plot.ruleY([reached], {stroke: MUTED, clip: true})] : []),
       Plot.areaY(lines, {x: "time", y1: low, y2: high, z: "graph", fill: "color", fillOpacity: 0.16, clip: true}),
       Plot.line(lines, {x: "time", y: "error", z: "graph", stroke: "color", strokeWidth: 2, clip: true}),
       Plot.ruleX(single, {x: "time", y1: low, y2: high, stroke: "color", strokeWidth: 2}),
@@ -89,8 +90,12 @@ function pareto(element, points, names) {
   })));
 }
 
+/** More names than this lie over each other; the pointer still tells. */
+const MOST_NAMES = 8;
+
 /** Names beside points, towards the middle of the plot. */
 function nameMarks(points, [from, to]) {
+  if (points.length > MOST_NAMES) return [];
   const far = (p) => p.time > from ** 0.4 * to ** 0.6;
   return [false, true].map((right) => Plot.text(points.filter((p) => far(p) === right), {x: "time", y: "error", text: "name", dx: right ? -9 : 9,
     textAnchor: right ? "end" : "start", fill: "currentColor", stroke: "var(--card)", strokeWidth: 4}));
@@ -110,6 +115,20 @@ function errorOfFrames(element, points, names) {
       Plot.areaY(usable, {x: "frame", y1: low, y2: high, z: "graph", fill: "color", fillOpacity: 0.16}),
       Plot.line(usable, {x: "frame", y: "error", z: "graph", stroke: "color", strokeWidth: 2}),
       Plot.tip(usable, Plot.pointer({x: "frame", y: "error", title: label, fill: "var(--card)", stroke: "var(--line)"})),
+    ],
+  })));
+}
+
+/** When each graph reaches the same error, a line a graph. */
+function timeToError(element, points) {
+  const x = logAxis(points.flatMap((p) => [p.low, p.high, p.time * 1.05]), "time (ms) →");
+  show(element, Plot.plot(base(element, {
+    x, y: {domain: points.map((p) => p.name), label: null, axis: null}, height: 90 + 44 * points.length, marginLeft: 16,
+    marks: [
+      Plot.ruleY(points, {y: "name", x1: "low", x2: "high", stroke: "color", strokeWidth: 2}),
+      Plot.dot(points, {y: "name", x: "time", fill: (p) => (p.at_once ? "var(--page)" : p.color), stroke: "color", strokeWidth: 2, r: 5}),
+      Plot.text(points, {y: "name", x: "time", text: "name", dy: -14, fill: "currentColor", stroke: "var(--card)", strokeWidth: 4,
+        textAnchor: "middle"}),
     ],
   })));
 }

@@ -31,9 +31,10 @@ function chartPoints(points, error) {
 }
 
 const KINDS = {
-  time: (element, scene, error) => errorAgainstTime(element, chartPoints(scene.curve, error), {x: "time (ms) →", y: `↑ ${NAMES[error]}`}),
+  time: (element, scene, error) => errorAgainstTime(element, chartPoints(scene.curve, error), {x: "time (ms) →", y: `↑ ${NAMES[error]}`}, error === "mse" && scene.reached ? Math.sqrt(scene.reached) : null),
   frame: (element, scene, error) => errorOfFrames(element, chartPoints(scene.curve, error), {x: "frame →", y: `↑ ${NAMES[error]}`}),
   pareto: (element, scene, error) => pareto(element, chartPoints(scene.cells, error), {x: "time (ms) →", y: `↑ ${NAMES[error]}`}),
+  reach: (element, scene) => timeToError(element, scene.reach.map((p) => ({...p, name: data.graphs[p.graph], color: color(p.graph)}))),
   temporal: (element, scene) => correlation(element, colored(scene.temporal), {x: "frames apart →", y: "↑ correlation"}),
   spatial: (element, scene) => correlation(element, colored(scene.spatial), {x: "pixels apart →", y: "↑ correlation"}),
 };
