@@ -28,8 +28,10 @@ pub struct Entrant {
 const SETTLING_FRAMES: u32 = 3;
 /// Visits to each graph meanwhile, in turn, so that a busy moment of the machine does not decide.
 const SETTLING_VISITS: u32 = 5;
-/// Frames of warm-up that settling gives to graphs with history: their cost has settled by then.
-const SETTLING_WARM_UP: u32 = 8;
+/// Turns in which a value of a knob is held against the budget's owner.
+const SETTLING_TURNS: u32 = 3;
+/// Frames of warm-up that settling gives to graphs with history: from the second on they have a history to read.
+const SETTLING_WARM_UP: u32 = 4;
 
 /// Graphs on one scene.
 pub struct Bench<'a> {
@@ -160,7 +162,7 @@ impl<'a> Bench<'a> {
     /// beside. A budget in plain milliseconds has nobody to be held against.
     fn beside(&mut self, graph: usize, knob: Option<f64>, budget: f64, of: Option<usize>) -> Result<f64, CompareError> {
         let mut relative = Vec::new();
-        for _ in 0..SETTLING_VISITS {
+        for _ in 0..SETTLING_TURNS {
             let owner = of.map(|of| self.frame_times(of, None)).transpose()?;
             let own = median(&self.frame_times(graph, knob)?);
             relative.push(own / owner.map_or(budget, |times| median(&times)));

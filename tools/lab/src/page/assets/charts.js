@@ -19,9 +19,10 @@ const superscript = (text) => text.replace(/[-0-9]/g, (c) => (c === "-" ? "⁻" 
 
 const label = (point) => `${point.name}\n${digits(point.time)} ms\nerror ${digits(point.error)}`;
 
-/** Ticks of a logarithmic axis, few enough to read: whole decades where there are many, else 1, 2, 5, and more of them on short axes. */
-function ticks(values) {
-  const low = Math.min(...values), high = Math.max(...values), decades = Math.log10(high / low);
+/** Ticks of a logarithmic axis, few enough to read: whole decades where there are many, else 1, 2, 5, and more of them on short axes. `room` is 1 for
+ * an axis of ordinary length, less for a shorter one. */
+function ticks(values, room) {
+  const low = Math.min(...values), high = Math.max(...values), decades = Math.log10(high / low) / room;
   const steps = decades > 3 ? [1] : decades > 1.2 ? [1, 2, 5] : decades > 0.5 ? [1, 1.5, 2, 3, 5, 7] : [1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9];
   const list = [];
   for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); e++) for (const step of steps) list.push(Number(`${step}e${e}`));
@@ -34,9 +35,12 @@ function domain(values) {
   return [low / room, high * room];
 }
 
-function logAxis(values, name) {
+/** Room of an axis across an element. */
+const across = (element) => Math.min(1, element.clientWidth / 420);
+
+function logAxis(values, name, room = 1) {
   const reach = domain(values);
-  return {type: "log", domain: reach, ticks: ticks(values).filter((t) => t >= reach[0] && t <= reach[1]), tickFormat: short, label: name, grid: true};
+  return {type: "log", domain: reach, ticks: ticks(values, room).filter((t) => t >= reach[0] && t <= reach[1]), tickFormat: short, label: name, grid: true};
 }
 
 /** Error against time with its band, the line that independent samples follow, and the error to be reached, if one is. */
@@ -44,7 +48,7 @@ function errorAgainstTime(element, points, names, reached) {
   const usable = points.filter((p) => positive(p.time) && positive(p.error));
   if (!usable.length) return nothing(element, "No error above zero to plot.");
   const low = (p) => (positive(p.low) ? p.low : p.error), high = (p) => (positive(p.high) ? p.high : p.error);
-  const times = usable.map((p) => p.time), x = logAxis(times.length > 1 && Math.max(...times) > Math.min(...times) ? times : times.flatMap((t) => [t / 2, t * 2]), names.x);
+  const times = usable.map((p) => p.time), x = logAxis(times.length > 1 && Math.max(...times) > Math.min(...times) ? times : times.flatMap((t) => [t / 2, t * 2]), names.x, across(element));
   const y = logAxis(usable.flatMap((p) => [low(p), high(p)]), names.y);
   const series = [...new Map(usable.map((p) => [p.graph, usable.filter((q) => q.graph === p.graph)])).values()];
   const guides = series.flatMap((s) => slope(s[0], x.domain, s[0].graph));
@@ -76,7 +80,7 @@ function pareto(element, points, names) {
   const low = (p) => (positive(p.low) ? p.low : p.error), high = (p) => (positive(p.high) ? p.high : p.error);
   const front = usable.filter((p) => !usable.some((q) => q !== p && q.time <= p.time && q.error <= p.error)).sort((a, b) => a.time - b.time);
   const times = usable.flatMap((p) => [p.time_low ?? p.time, p.time_high ?? p.time]);
-  const x = logAxis(times.every((t) => t === times[0]) ? [times[0] / 2, times[0] * 2] : times, names.x);
+  const x = logAxis(times.every((t) => t === times[0]) ? [times[0] / 2, times[0] * 2] : times, names.x, across(element));
   show(element, Plot.plot(base(element, {
     x, y: logAxis(usable.flatMap((p) => [low(p), high(p)]), names.y),
     marks: [
@@ -121,7 +125,7 @@ function errorOfFrames(element, points, names) {
 
 /** When each graph reaches the same error, a line a graph. */
 function timeToError(element, points) {
-  const x = logAxis(points.flatMap((p) => [p.low, p.high, p.time * 1.05]), "time (ms) →");
+  const x = logAxis(points.flatMap((p) => [p.low, p.high, p.time * 1.05]), "time (ms) →", across(element));
   show(element, Plot.plot(base(element, {
     x, y: {domain: points.map((p) => p.name), label: null, axis: null}, height: 90 + 44 * points.length, marginLeft: 16,
     marks: [
