@@ -1,17 +1,30 @@
 //! A scene at one time: animation applied, the hierarchy multiplied out, one camera chosen.
 
 use crate::{Camera, Instance, Moment, Node, PlacedLight, Scene, SceneError};
-use glam::{Affine3A, Mat3A, Vec3, Vec3A};
+use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec3, Vec3A};
+
+/// Metres between the places where a moment's origin may lie: floats tell 3·10⁻⁵ m apart half as far away.
+const ORIGINS: f64 = 1024.0;
 
 impl Scene {
     /// The scene at `time` seconds, seen by the camera of that name, or by the first camera. Before the first key and after the last
     /// one, animation holds still.
     ///
+    /// Floats are fine only near their origin, so that of the moment lies near the first camera, see [`Moment::origin`].
+    ///
     /// # Errors
     /// [`SceneError::UnknownCamera`] lists the cameras there are; the others speak of a scene that was not finished.
     pub fn at(&self, time: f32, camera: Option<&str>) -> Result<Moment, SceneError> {
-        let world = self.world_transforms(time)?;
-        Ok(Moment { time, instances: self.instances(&world), lights: self.placed_lights(&world), camera: self.camera(&world, camera)? })
+        let origin = self.origin();
+        let near = |world: DAffine3| (DAffine3::from_translation(-origin) * world).as_affine3a();
+        let world: Vec<Affine3A> = self.node_transforms(time)?.into_iter().map(near).collect();
+        Ok(Moment {
+            time,
+            origin,
+            instances: self.instances(&world),
+            lights: self.placed_lights(&world),
+            camera: self.camera(&world, camera)?,
+        })
     }
 
     /// Node to world at `time`, one a node.
@@ -19,6 +32,10 @@ impl Scene {
     /// # Errors
     /// When `time` is not finite.
     pub fn world_transforms(&self, time: f32) -> Result<Vec<Affine3A>, SceneError> {
+        Ok(self.node_transforms(time)?.into_iter().map(|world| world.as_affine3a()).collect())
+    }
+
+    fn node_transforms(&self, time: f32) -> Result<Vec<DAffine3>, SceneError> {
         if !time.is_finite() {
             return Err(SceneError::Time(time));
         }
@@ -26,12 +43,24 @@ impl Scene {
         for channel in &self.animation {
             channel.apply(time, &mut nodes[channel.node as usize]);
         }
-        let mut world: Vec<Affine3A> = Vec::with_capacity(nodes.len());
+        let mut world: Vec<DAffine3> = Vec::with_capacity(nodes.len());
         for node in &nodes {
-            let parent = node.parent.map_or(Affine3A::IDENTITY, |parent| world[parent as usize]);
+            let parent = node.parent.map_or(DAffine3::IDENTITY, |parent| world[parent as usize]);
             world.push(parent * node.local_transform());
         }
         Ok(world)
+    }
+
+    /// The nearest place of a moment's origin to the first camera without its animation: the same at all times, since history holds places too.
+    fn origin(&self) -> DVec3 {
+        let mut next = self.placed_cameras().next().map(|(node, _)| node as u32);
+        let mut position = DVec3::ZERO;
+        while let Some(node) = next.map(|node| &self.nodes[node as usize]) {
+            position = node.local_transform().transform_point3(position);
+            next = node.parent;
+        }
+        let origin = (position / ORIGINS).round() * ORIGINS;
+        if origin.is_finite() { origin } else { DVec3::ZERO }
     }
 
     /// Names of the cameras that nodes hold, the default one first.
@@ -76,8 +105,8 @@ impl Scene {
 
 impl Node {
     /// `translation * rotation * scale`.
-    pub fn local_transform(&self) -> Affine3A {
-        Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    pub fn local_transform(&self) -> DAffine3 {
+        DAffine3::from_scale_rotation_translation(self.scale.as_dvec3(), self.rotation.as_dquat(), self.translation.as_dvec3())
     }
 }
 
@@ -133,6 +162,25 @@ mod tests {
         assert!((matrix.transpose() * matrix).abs_diff_eq(Mat3A::IDENTITY, 1e-6));
         assert!((-matrix.z_axis).abs_diff_eq(glam::vec3a(-1.0, 0.0, 0.0), 1e-6), "looks where −Z went");
         assert!(matrix.y_axis.abs_diff_eq(glam::vec3a(0.0, -1.0, 0.0), 1e-6), "up is where +Y went");
+    }
+
+    #[test]
+    fn far_from_the_origin_everything_is_as_fine_as_near_it() {
+        let far = |translation: Vec3| {
+            let root = Node { translation, ..Node::default() };
+            let below = |x: f32| Node { parent: Some(0), translation: vec3(x, 2.0, -3.0), ..Node::default() };
+            let lens = Lens { name: "main".into(), vertical_fov: 1.0, aspect: None, near: 0.1 };
+            let nodes = vec![root, Node { camera: Some(0), ..below(0.125) }, Node { mesh: Some(0), ..below(0.126) }];
+            Scene { nodes, cameras: vec![lens], ..Scene::default() }.at(0.0, None).unwrap()
+        };
+        for translation in [Vec3::ZERO, Vec3::splat(500.0), vec3(1e4, -1e6, 1e6), Vec3::splat(f32::MAX)] {
+            let moment = far(translation);
+            let apart = Vec3::from(moment.instances[0].transform.translation) - moment.camera.position();
+            assert!(translation.x > 1e30 || apart.abs_diff_eq(vec3(1e-3, 0.0, 0.0), 4e-5), "{translation}: {apart}");
+            assert_eq!(moment.origin == DVec3::ZERO, translation.abs().max_element() < 512.0);
+            let place = moment.camera.position().as_dvec3() + moment.origin;
+            assert!(place.abs_diff_eq(translation.as_dvec3() + DVec3::new(0.125, 2.0, -3.0), 1e-4) || translation.x > 1e30);
+        }
     }
 
     #[test]

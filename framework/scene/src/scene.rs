@@ -1,7 +1,7 @@
 //! The plain arrays of a scene. Units: metres, radians, watts; colours are linear Rec. 709.
 
 use crate::{Bvh, Camera};
-use glam::{Affine3A, Mat3, Quat, Vec2, Vec3, Vec4};
+use glam::{Affine3A, DVec3, Mat3, Quat, Vec2, Vec3, Vec4};
 
 /// Everything that can be drawn, before any time is chosen.
 #[derive(Clone, Debug, Default)]
@@ -299,6 +299,8 @@ pub enum Interpolation {
 pub struct Moment {
     /// Seconds.
     pub time: f32,
+    /// Where the places of this moment begin to count, in the scene's own world: the origin itself unless the camera is far from it.
+    pub origin: DVec3,
     /// Placed meshes, in node order: the same index is the same thing at every time.
     pub instances: Vec<Instance>,
     /// Placed punctual lights, in node order.

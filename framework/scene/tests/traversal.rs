@@ -1,6 +1,6 @@
 //! The two-level hierarchy against every triangle tried in turn, in double precision.
 
-use aquifer_scene::{CpuTracer, Hit, Material, Mesh, Moment, Node, Scene, Tlas};
+use aquifer_scene::{CpuTracer, Hit, Lens, Material, Mesh, Moment, Node, Scene, Tlas};
 use glam::{Quat, Vec3, vec3};
 
 /// SplitMix64.
@@ -49,8 +49,11 @@ fn scene() -> Scene {
         place(0, vec3(5e3, 0.0, 0.0), Quat::from_rotation_x(2.0), Vec3::splat(2e3)),
         place(2, Vec3::ZERO, Quat::IDENTITY, Vec3::ONE),
         place(0, Vec3::ZERO, Quat::IDENTITY, vec3(1.0, 0.0, 1.0)),
+        // One that framed the scene would be far away, and the moment's origin with it.
+        Node { camera: Some(0), ..Node::default() },
     ];
-    Scene { meshes, materials: vec![Material::default()], nodes, ..Scene::default() }.finish().expect("the scene is sound")
+    let cameras = vec![Lens { name: "main".into(), vertical_fov: 1.0, aspect: None, near: 0.1 }];
+    Scene { meshes, materials: vec![Material::default()], nodes, cameras, ..Scene::default() }.finish().expect("the scene is sound")
 }
 
 /// All hits of a ray with world-space triangles: (t, instance, triangle), and how near the ray came to an edge.
