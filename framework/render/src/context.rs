@@ -135,6 +135,11 @@ impl Context {
         &self.inner.limits
     }
 
+    /// Bytes that the device's buffers and textures take now; `None` where the backend does not tell.
+    pub fn device_bytes(&self) -> Option<u64> {
+        self.inner.device.generate_allocator_report().map(|report| report.total_allocated_bytes)
+    }
+
     /// How long it took to find the adapter and open the device.
     pub fn opened_in(&self) -> Duration {
         self.inner.opened_in

@@ -1,7 +1,9 @@
 //! A plan on a device: one submission a step, so that each can be timed, and named when it hangs.
 
 use crate::{
-    Context, Error, Frame, FrameInfo, Globals, MemoryReport, Registry, Startup, Timings, limits, node,
+    Context, Error, Frame, FrameInfo, Globals, MemoryReport, PortCounts, Registry, RendererOptions, Startup, Timings,
+    counters::Counters,
+    limits, node,
     node::{Memory, Node, Work},
     pool::{Part, Pool},
     readback::Mapping,
@@ -18,6 +20,7 @@ pub(crate) struct Executor {
     nodes: Vec<Node>,
     pool: Pool,
     memory: MemoryReport,
+    counters: Option<Counters>,
     stamps: Option<Stamps>,
     watch: Stopwatch,
     flights: VecDeque<Flight>,
@@ -38,8 +41,8 @@ struct Flight {
 
 impl Executor {
     /// Composes, checks limits, compiles, allocates, binds: in this order, so that nothing is allocated for a plan that cannot run.
-    pub fn new(context: &Context, registry: &Registry, plan: Plan, size: [u32; 2], poison: bool) -> Result<Executor, Error> {
-        let begin = Instant::now();
+    pub fn new(context: &Context, registry: &Registry, plan: Plan, options: &RendererOptions) -> Result<Executor, Error> {
+        let (begin, size) = (Instant::now(), options.size);
         let contract = |pass: &str, source| Error::Contract { pass: pass.to_owned(), source };
         let known = plan.steps.iter().map(|step| registry.known(&step.kind, &step.slots).map_err(|source| contract(&step.node, source)));
         let known = known.collect::<Result<Vec<_>, Error>>()?;
@@ -48,7 +51,7 @@ impl Executor {
         let programs = plan.steps.iter().zip(&known).map(|(step, known)| node::compile(context, step, known));
         let programs = programs.collect::<Result<Vec<_>, Error>>()?;
         let compiled = Instant::now();
-        let pool = Pool::new(context, &plan, size, poison)?;
+        let pool = Pool::new(context, &plan, size, options.poison)?;
         let mut nodes = Vec::new();
         for (index, (known, programs)) in known.iter().zip(programs).enumerate() {
             let (step, memory) = (&plan.steps[index], Memory { pool: &pool, size });
@@ -57,6 +60,7 @@ impl Executor {
             nodes.push(Node { pass, work: Work::new(context, &plan, index, known, programs, memory)? });
         }
         let memory = pool.report().with(nodes.iter().flat_map(|node: &Node| node.work.images()));
+        let counters = options.counters.then(|| Counters::new(context, &plan, &known, &pool, size)).transpose()?;
         let stamps = Stamps::new(context, nodes.len())?;
         let clock = if stamps.is_some() { Clock::Timestamps } else { Clock::Wall };
         let names = plan.steps.iter().map(|step| step.node.clone()).collect();
@@ -67,6 +71,7 @@ impl Executor {
             nodes,
             pool,
             memory,
+            counters,
             stamps,
             watch: Stopwatch::new(clock, names),
             flights: VecDeque::new(),
@@ -119,7 +124,7 @@ impl Executor {
     fn step(&mut self, index: usize, info: &FrameInfo, globals: &dyn Globals) -> Result<wgpu::SubmissionIndex, Error> {
         let (slot, parity) = (self.slot(), self.parity);
         let resolve = index + 1 == self.nodes.len();
-        let Executor { context, nodes, pool, stamps, .. } = self;
+        let Executor { context, nodes, pool, counters, stamps, .. } = self;
         let Node { pass, work } = &mut nodes[index];
         work.bind_globals(context, globals)?;
         let name = work.name().to_owned();
@@ -131,6 +136,9 @@ impl Executor {
             let outcome = pass.record(&mut frame);
             let jobs = frame.jobs;
             work.record(&mut encoder, &jobs, parity, stamps.as_ref(), index);
+            if let Some(counters) = counters {
+                counters.record(&mut encoder, index, parity);
+            }
             if let (Some(stamps), true) = (stamps, resolve) {
                 stamps.record_resolve(&mut encoder, slot);
             }
@@ -237,6 +245,11 @@ impl Executor {
 
     pub fn memory(&self) -> &MemoryReport {
         &self.memory
+    }
+
+    /// What the passes' outputs held; nothing where nobody counts.
+    pub fn counts(&self) -> Result<Vec<PortCounts>, Error> {
+        self.counters.as_ref().map_or(Ok(Vec::new()), |counters| counters.read(&self.context))
     }
 
     /// What passes have to say, by name.

@@ -10,6 +10,7 @@ mod adapter;
 mod cache;
 mod context;
 mod contract;
+mod counters;
 mod drawing;
 mod error;
 mod executor;
@@ -34,6 +35,7 @@ mod workgroup_memory;
 
 pub use adapter::{AdapterReport, adapters};
 pub use context::{Context, ContextOptions, LimitChoice};
+pub use counters::PortCounts;
 pub use drawing::Batch;
 pub use error::Error;
 pub use globals::{FrameInfo, Globals, NoGlobals};

@@ -1,6 +1,6 @@
 //! A plan that renders frame after frame.
 
-use crate::{Context, Error, FrameInfo, Globals, MemoryReport, Registry, Startup, Timings, executor::Executor, readback};
+use crate::{Context, Error, FrameInfo, Globals, MemoryReport, PortCounts, Registry, Startup, Timings, executor::Executor, readback};
 use aquifer_graph::{Plan, Value};
 
 /// How to render.
@@ -14,6 +14,8 @@ pub struct RendererOptions {
     pub first_frame: u32,
     /// Fills every output with NaN before the pass that must write it, so that what the pass leaves out shows.
     pub poison: bool,
+    /// Counts the NaNs and infinities in what each pass writes, see [`Renderer::counts`]; this costs a dispatch for each output.
+    pub counters: bool,
 }
 
 /// A plan on a device, with its globals and its place in time.
@@ -39,7 +41,7 @@ impl Renderer {
         globals: Box<dyn Globals>,
         options: RendererOptions,
     ) -> Result<Renderer, Error> {
-        let executor = Executor::new(context, registry, plan, options.size, options.poison)?;
+        let executor = Executor::new(context, registry, plan, &options)?;
         Ok(Renderer { context: context.clone(), executor, globals, options, next: options.first_frame, history_valid: false })
     }
 
@@ -102,7 +104,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn replace_plan(&mut self, registry: &Registry, plan: Plan) -> Result<(), Error> {
-        self.executor = Executor::new(&self.context, registry, plan, self.options.size, self.options.poison)?;
+        self.executor = Executor::new(&self.context, registry, plan, &self.options)?;
         self.begin();
         Ok(())
     }
@@ -113,8 +115,9 @@ impl Renderer {
     /// As [`Renderer::new`].
     pub fn resize(&mut self, registry: &Registry, size: [u32; 2]) -> Result<(), Error> {
         let plan = self.executor.plan().clone();
-        self.executor = Executor::new(&self.context, registry, plan, size, self.options.poison)?;
-        self.options.size = size;
+        let options = RendererOptions { size, ..self.options };
+        self.executor = Executor::new(&self.context, registry, plan, &options)?;
+        self.options = options;
         self.begin();
         Ok(())
     }
@@ -213,6 +216,16 @@ impl Renderer {
     /// Where memory goes.
     pub fn memory(&self) -> &MemoryReport {
         self.executor.memory()
+    }
+
+    /// NaNs and infinities in every output that holds floats, in order of execution, of all frames since plan and size are these: restarts do not
+    /// forget. Nothing without [`RendererOptions::counters`].
+    ///
+    /// # Errors
+    /// As [`Renderer::frame`].
+    pub fn counts(&mut self) -> Result<Vec<PortCounts>, Error> {
+        self.finish()?;
+        self.executor.counts()
     }
 
     /// What passes have to say, by name.

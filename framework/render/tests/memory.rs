@@ -136,3 +136,28 @@ fn another_size_begins_anew() {
     render(&mut renderer, 1);
     assert_eq!(pixels(&mut renderer, "count.after"), [[2.0; 4]; 20], "the old size stays");
 }
+
+#[test]
+fn floats_that_are_none_are_counted_where_they_were_written() {
+    let registry = registry(&[]);
+    let plan = plan(
+        &registry,
+        "copy.image",
+        "[pass.source]\n[pass.sick]\n[pass.copy]\nin.value = \"sick.value\"\n",
+        &["source.value", "sick.mixed"],
+    );
+    let mut blind = renderer(&registry, plan.clone(), small());
+    render(&mut blind, 2);
+    assert_eq!(blind.counts().unwrap(), []);
+    let mut counting = renderer(&registry, plan, RendererOptions { counters: true, ..small() });
+    render(&mut counting, 2);
+    let counts = counting.counts().unwrap();
+    let found = |name: &str| {
+        let counts = counts.iter().find(|counts| format!("{}.{}", counts.pass, counts.port) == name).unwrap();
+        (counts.nan, counts.infinite)
+    };
+    // Two frames; 13 pixels a row.
+    assert_eq!([found("source.value"), found("sick.mixed"), found("sick.value"), found("copy.image")], [(0, 0), (2, 0), (0, 26), (0, 26)]);
+    let bits = |renderer: &mut aquifer_render::Renderer| renderer.read("copy.image").unwrap();
+    assert_eq!(bits(&mut blind), bits(&mut counting), "counting changes nothing");
+}

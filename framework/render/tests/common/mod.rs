@@ -52,6 +52,16 @@ const PASSES: &[(&str, &str, &str)] = &[
         "if (i % 2u == 0u) { value[i] = vec4<f32>(7.0); }",
     ),
     (
+        // A NaN in pixel 3, in words that are floats and in one that is not; infinities in the row above the last.
+        "sick",
+        "struct Mixed { id: u32, pair: vec2<f32>, _pad: u32 }\n\
+         @group(1) @binding(0) var<storage, read_write> mixed: array<Mixed>;\n\
+         @group(1) @binding(1) var<storage, read_write> value: array<vec4<f32>>;\n",
+        "let nan = bitcast<f32>(0x7fc00000u | i); let infinite = bitcast<f32>(0xff800000u | (frame.index & 0u));\n\
+         mixed[i] = Mixed(0x7fc00000u, vec2<f32>(1.0, select(1.0, nan, i == 3u)), 0x7f800000u);\n\
+         value[i] = vec4<f32>(1.0, 2.0, select(3.0, infinite, id.y == frame.extent.y - 2u), 3.0e38);",
+    ),
+    (
         "scale",
         "struct Params {\n/// @default 2\n/// @range 0 100\ngain: f32,\n/// @default 3\noffset: u32,\n}\n\
          @group(1) @binding(0) var<uniform> params: Params;\n\

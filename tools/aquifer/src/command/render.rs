@@ -65,6 +65,9 @@ pub struct Args {
     /// Render and write again whenever the graph or a file of --shaders changes, until Ctrl-C; what is broken is told, and the last good graph stays
     #[arg(long)]
     watch: bool,
+    /// Count the NaNs and infinities in what each pass writes, and tell which passes have any; the picture stays the same to the bit
+    #[arg(long)]
+    counters: bool,
     /// Print what was done as JSON: samples, seconds, time of each pass, memory
     #[arg(long)]
     json: bool,
@@ -86,6 +89,9 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let spent = job.render(args.goal(), ui, || false)?;
     let summary = job.write(&args.outputs, spent, began)?;
     ui.note(&summary.sentence());
+    if args.counters {
+        ui.note(&summary.counted());
+    }
     if args.json { ui.json(&summary) } else { Ok(()) }
 }
 

@@ -206,6 +206,43 @@ fn a_sequence_is_numbered_images_of_what_moves() {
     sequence("b.#.exr", &["--frames", "2..2"]).fails(2, "the last number is not included");
 }
 
+/// A pass of one's own that spoils one pixel.
+const SPOILT: &str = "//! Spoils a pixel.
+import package::frame::frame::{frame, index_of, inside};
+@group(1) @binding(0) var<storage, read> color: array<vec4<f32>>;
+@group(1) @binding(1) var<storage, read_write> image: array<vec4<f32>>;
+@compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if (!inside(id.xy)) { return; }
+    let at = index_of(id.xy);
+    image[at] = select(color[at], vec4<f32>(bitcast<f32>(0x7fc00000u | frame.index)), at == 5u);
+}
+";
+
+#[test]
+fn a_nan_is_told_with_the_pass_that_made_it() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    std::fs::create_dir(at("pass")).and_then(|()| std::fs::write(at("pass/spoil.wgsl"), SPOILT)).expect("a file");
+    let graph =
+        "extends = \"path_tracer.toml\"\n[pass.spoil]\nin.color = \"path_tracer.color\"\n[pass.accumulate]\nin.color = \"spoil.image\"\n";
+    std::fs::write(at("spoilt.toml"), graph).expect("a file");
+    let spoilt = ["render", &at("spoilt.toml"), "--shaders", &at(""), "--size", "16x9", "--frames", "3", "--counters", "-o", &at("a.exr")];
+    let run = aquifer(&spoilt).succeeds();
+    assert!(run.err.contains("first in pass `spoil`"), "{}", run.err);
+    assert!(run.err.contains("spoil.image: 3 NaN, 0 infinite"), "{}", run.err);
+    let clean = render(Path::new(&at("b.exr")), &["--frames", "3", "--counters"]).succeeds();
+    assert!(clean.err.contains("no NaN and no infinity in"), "{}", clean.err);
+    render(Path::new(&at("c.exr")), &["--frames", "3"]).succeeds();
+    let bits = |name: &str| -> Vec<u32> {
+        let film = Film::read(Path::new(&at(name))).expect("it was written");
+        film.color.iter().chain(film.variance.iter().flatten()).flatten().map(|value| value.to_bits()).collect()
+    };
+    assert_eq!(bits("b.exr"), bits("c.exr"), "counting changes nothing");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_watched_graph_is_rendered_anew_and_a_broken_one_changes_nothing() {

@@ -62,7 +62,8 @@ impl<'a> Job<'a> {
         let (taken, plan) = planned(&graph)?;
         let view = View { camera: args.camera.clone(), ..view };
         let globals = SceneGlobals::new(&context, scene.clone(), view.clone())?;
-        let options = RendererOptions { size: args.size, seed: args.seed, first_frame, ..RendererOptions::default() };
+        let options =
+            RendererOptions { size: args.size, seed: args.seed, first_frame, counters: args.counters, ..RendererOptions::default() };
         let renderer = Renderer::new(&context, &registry, plan, Box::new(globals), options)?;
         Ok(Self { args, source, scene, view, graph, taken, renderer })
     }
@@ -135,7 +136,8 @@ impl<'a> Job<'a> {
             }
         }
         let rays = rays.read(&mut self.renderer)?;
-        Ok(Summary::new(&self.graph, &film, &self.renderer, rays, spent.frames, set_up, paths))
+        let counts = self.renderer.counts()?;
+        Ok(Summary::new(&self.graph, &film, &self.renderer, (rays, counts), spent.frames, set_up, paths))
     }
 
     fn facts(&self, spent: State) -> Result<Facts, Failure> {

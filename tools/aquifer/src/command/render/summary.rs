@@ -5,7 +5,7 @@ use aquifer_lab::{
     film::{Film, luminance},
     rays::PassRays,
 };
-use aquifer_render::{MemoryReport, Renderer, Startup, Timings};
+use aquifer_render::{MemoryReport, PortCounts, Renderer, Startup, Timings};
 use serde::Serialize;
 use std::{
     path::{Path, PathBuf},
@@ -38,6 +38,8 @@ pub struct Summary {
     passes: Timings,
     /// Of the last frame, where passes count them.
     rays: Vec<PassRays>,
+    /// NaNs and infinities by pass and output, over all frames; empty without --counters.
+    counters: Vec<PortCounts>,
     startup_seconds: Setup,
     memory: MemoryReport,
     /// Of this process, where the system tells.
@@ -77,7 +79,7 @@ impl Summary {
         graph: &Graph,
         film: &Film,
         renderer: &Renderer,
-        rays: Vec<PassRays>,
+        (rays, counters): (Vec<PassRays>, Vec<PortCounts>),
         frames: u64,
         set_up: Duration,
         outputs: &[PathBuf],
@@ -102,6 +104,7 @@ impl Summary {
             relative_error: relative_error(film),
             passes: renderer.timings(),
             rays,
+            counters,
             startup_seconds: Setup::of(startup),
             memory: renderer.memory().clone(),
             peak_memory_bytes: peak_memory(),
@@ -121,6 +124,21 @@ impl Summary {
         );
         for path in &self.outputs {
             text += &format!("\n  wrote {}", path.display());
+        }
+        text
+    }
+
+    /// Which outputs held what no picture should, in order of execution.
+    pub fn counted(&self) -> String {
+        let bad: Vec<&PortCounts> = self.counters.iter().filter(|counts| counts.nan + counts.infinite > 0).collect();
+        let mut text = match bad.first() {
+            None => format!("no NaN and no infinity in {} outputs", self.counters.len()),
+            Some(first) => {
+                format!("NaNs or infinities in {} of {} outputs, first in pass `{}`:", bad.len(), self.counters.len(), first.pass)
+            }
+        };
+        for PortCounts { pass, port, nan, infinite } in bad {
+            text += &format!("\n  {pass}.{port}: {nan} NaN, {infinite} infinite");
         }
         text
     }
