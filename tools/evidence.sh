@@ -10,6 +10,8 @@
 #     tools/evidence.sh restir_gi_cost
 #     tools/evidence.sh light_change
 #     tools/evidence.sh error_parts [SCENE …]
+#     tools/evidence.sh stress [CASE …]
+#     tools/evidence.sh long [GRAPH …]
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
@@ -19,6 +21,7 @@
 # over. A row wants some 10⁹ rays.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # light_change: error of ReSTIR GI by frame around a jump of the sun. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
+# stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -50,8 +53,14 @@ restir_di_cost | restir_gi_cost)
 light_change | error_parts)
     cargo run --quiet -p aquifer-tests --example "$item" -- "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
+stress | long)
+    cargo build --quiet -p aquifer
+    cargo run --quiet -p aquifer-tests --example stress_evidence -- "$item" target/debug/aquifer "docs/evidence/$item.json" \
+        "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
+    ;;
 *)
-    echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change, error_parts" >&2
+    echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change," \
+        "error_parts, stress, long" >&2
     exit 2
     ;;
 esac

@@ -21,6 +21,11 @@ impl Evidence {
         Evidence { path: path.into(), about, rows }
     }
 
+    /// The rows so far that were made with this commit.
+    pub fn rows(&self) -> impl Iterator<Item = &Value> {
+        self.rows.iter().filter(|row| row["commit"] == self.about["commit"])
+    }
+
     /// Writes a row: `key` says what it is of, `found` what was found. It takes the place of an older one of the same key.
     ///
     /// # Panics

@@ -3,6 +3,7 @@
 use crate::{
     command::{
         adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, regress, render, report, scenes, schema,
+        stress,
     },
     failure::Failure,
     ui::Ui,
@@ -61,6 +62,8 @@ pub enum Command {
     Merge(merge::Args),
     /// Check that graphs still give the pictures that were kept
     Regress(regress::Args),
+    /// Try graphs on extreme and stiff scenes: finite, right by statistics, soon right again after a change
+    Stress(stress::Args),
     /// Measure how far one image is from another
     Diff(diff::Args),
     /// Measure speed: medians and ratios of contestants that take turns
@@ -90,6 +93,7 @@ impl Command {
             Self::Adapters(args) => adapters::run(args, ui),
             Self::Merge(args) => merge::run(args, ui),
             Self::Regress(args) => regress::run(args, ui),
+            Self::Stress(args) => stress::run(args, ui),
             Self::Diff(args) => diff::run(args, ui),
             Self::Bench(args) => bench::run(args, ui),
             Self::Report(args) => report::run(args, ui),

@@ -16,3 +16,4 @@ pub mod render;
 pub mod report;
 pub mod scenes;
 pub mod schema;
+pub mod stress;

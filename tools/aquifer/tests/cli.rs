@@ -16,6 +16,8 @@ mod protocols;
 mod regress;
 #[path = "cli/render.rs"]
 mod render;
+#[path = "cli/robust.rs"]
+mod robust;
 #[path = "cli/run.rs"]
 mod run;
 #[path = "cli/scenes.rs"]

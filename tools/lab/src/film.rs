@@ -10,7 +10,7 @@ mod png;
 pub use area::{Area, AreaError, Region};
 pub use facts::{Facts, GraphText, Overlap, Run, Runs};
 pub use merge::{MergeError, merge};
-pub(crate) use png::{linear, srgb};
+pub(crate) use png::{bytes as png_bytes, linear, srgb};
 
 use crate::atomic::WriteError;
 use std::path::{Path, PathBuf};

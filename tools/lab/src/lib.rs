@@ -2,7 +2,7 @@
 //!
 //! [`film`] holds rendered images and their files, [`capture`] takes them off a renderer that [`stage`] made ready, [`metrics`] says how far
 //! they are from a reference, [`stats`] decides what differences between them mean; [`compare`] holds graphs against each other, and [`page`]
-//! tells people what that gave; [`watch`] tells when the files of an experiment change.
+//! tells people what that gave; [`stress`] tries them on scenes at the ends of what numbers can bear; [`watch`] tells when the files of an experiment change.
 //! Everything here is deterministic: the same images give the same verdicts.
 
 pub mod atomic;
@@ -17,4 +17,5 @@ pub mod rays;
 pub mod regress;
 pub mod stage;
 pub mod stats;
+pub mod stress;
 pub mod watch;

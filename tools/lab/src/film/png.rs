@@ -6,13 +6,18 @@ use image::{ImageFormat, ImageReader, RgbImage};
 use std::{fs::File, io, path::Path};
 
 pub(super) fn write(film: &Film, path: &Path) -> Result<(), FilmError> {
-    let failed = |source| FilmError::Png { path: path.to_owned(), source };
+    let bytes = bytes(film).map_err(|source| FilmError::Png { path: path.to_owned(), source })?;
+    Ok(atomic::write(path, &bytes)?)
+}
+
+/// The file's content.
+pub(crate) fn bytes(film: &Film) -> Result<Vec<u8>, image::ImageError> {
     let bytes = film.color.iter().flatten().map(|&linear| encode(linear)).collect();
     let [width, height] = film.size;
     let picture = RgbImage::from_raw(width, height, bytes).expect("the film's planes were checked against its size");
     let mut file = io::Cursor::new(Vec::new());
-    picture.write_to(&mut file, ImageFormat::Png).map_err(failed)?;
-    Ok(atomic::write(path, &file.into_inner())?)
+    picture.write_to(&mut file, ImageFormat::Png)?;
+    Ok(file.into_inner())
 }
 
 pub(super) fn read(path: &Path) -> Result<Film, FilmError> {

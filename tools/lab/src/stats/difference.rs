@@ -106,8 +106,11 @@ impl Difference {
         }
     }
 
-    /// Probability of a standard score above `score`.
+    /// Probability of a standard score above `score`; of a score that is no number there is none.
     fn upper_tail(&self, score: f64) -> f64 {
+        if score.is_nan() {
+            return f64::NAN;
+        }
         if score.is_infinite() {
             return if score > 0.0 { 0.0 } else { 1.0 };
         }
@@ -195,7 +198,11 @@ mod tests {
         let apart = Difference::normal(0.2, 0.0);
         assert_eq!((apart.p_different(), apart.p_equivalent(0.1), apart.p_outside(0.1)), (0.0, 1.0, 0.0));
         assert_eq!(Difference::normal(f64::NAN, 1.0).judge(1.0, Rule::Estimate), Verdict::Failed);
-        assert_eq!(Difference::normal(0.0, f64::NAN).judge(1.0, Rule::Estimate), Verdict::NotResolved);
+        for rule in [Rule::Estimate, Rule::Exceeds { alpha: 0.05 }, Rule::Equivalent { alpha: 0.05 }] {
+            let [nowhere, unknown] = [(f64::NAN, 1.0), (2.0, f64::NAN)]
+                .map(|(value, standard_error)| Difference { value, standard_error, freedom: 3.0 }.judge(1.0, rule));
+            assert_eq!([nowhere, unknown], [Verdict::Failed, Verdict::NotResolved], "{rule:?}");
+        }
     }
 
     #[test]

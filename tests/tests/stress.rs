@@ -1,0 +1,55 @@
+//! Extreme and stiff cases: a few of them run, and a planted bug is found.
+
+use aquifer_graph::{Document, Shelf};
+use aquifer_lab::stress::{self, Bench, Effort, Outcome, Row};
+use aquifer_tests::context;
+use std::path::PathBuf;
+
+const EFFORT: Effort = Effort { seeds: [4, 32], truth: 256 };
+
+fn document(graph: &str) -> Document {
+    let files = Shelf::new("built-in", aquifer_graphs::files());
+    Document::load(&format!("{graph}.toml"), &files).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// The rows of a case; nothing without an adapter.
+fn rows(case: &str, graphs: &[&str], shaders: &[PathBuf]) -> Vec<Row> {
+    let Some(context) = context() else { return Vec::new() };
+    let case = stress::by_name(case).expect("it is in the list");
+    let baseline = document("path_tracer");
+    let mut bench = Bench::new(&context, case, &baseline, EFFORT, shaders);
+    let row = |graph: &&str| bench.run(graph, &document(graph)).unwrap_or_else(|error| panic!("{error}")).0;
+    graphs.iter().map(row).inspect(|row| eprintln!("{}", row.sentence())).collect()
+}
+
+#[test]
+fn a_few_cases_do_what_they_should() {
+    let cases = [
+        ("far_1e6", &["path_tracer", "restir_di_unbiased"][..]),
+        ("scaled_down", &["restir_di_unbiased"]),
+        ("one_pixel", &["restir_full"]),
+        ("black", &["restir_gi_unbiased"]),
+        ("no_light", &["restir_full"]),
+        ("nan_texels", &["path_tracer"]),
+        ("4k", &["path_tracer"]),
+        ("camera_cut", &["restir_di_unbiased"]),
+    ];
+    for (case, graphs) in cases {
+        for row in rows(case, graphs, &[]) {
+            assert!(row.is_good(), "{}", row.sentence());
+        }
+    }
+}
+
+#[test]
+fn a_step_that_does_not_scale_with_the_scene_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text =
+        aquifer_passes::library().text("scene/ray").expect("a module").replace("RELATIVE_ERROR * max(size, max3(abs(point)))", "1e-2");
+    std::fs::create_dir(folder.path().join("scene"))
+        .and_then(|()| std::fs::write(folder.path().join("scene/ray.wgsl"), text))
+        .expect("a file");
+    for row in rows("scaled_down", &["path_tracer"], &[folder.path().to_owned()]) {
+        assert_eq!(row.outcome, Outcome::Failed, "{}", row.sentence());
+    }
+}
