@@ -2,7 +2,7 @@
 
 use aquifer_graph::{Document, Shelf};
 use aquifer_lab::stress::{self, Bench, Effort, Outcome, Row};
-use aquifer_tests::context;
+use aquifer_tests::{context, scene};
 use std::path::PathBuf;
 
 const EFFORT: Effort = Effort { seeds: [4, 32], truth: 256 };
@@ -52,4 +52,13 @@ fn a_step_that_does_not_scale_with_the_scene_is_found() {
     for row in rows("scaled_down", &["path_tracer"], &[folder.path().to_owned()]) {
         assert_eq!(row.outcome, Outcome::Failed, "{}", row.sentence());
     }
+}
+
+/// Every pass of resampling, of direct and of indirect light.
+#[test]
+fn a_thousand_frames_neither_drift_nor_grow() {
+    let Some(context) = context() else { return };
+    let run = stress::long(&context, &scene("cornell"), ("restir_full", &document("restir_full")), [32, 18], 1000);
+    let run = run.unwrap_or_else(|error| panic!("{error}")).expect("it has history");
+    assert!(run.is_good(), "{}", run.sentence());
 }

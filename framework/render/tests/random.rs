@@ -38,7 +38,7 @@ impl Kind {
 }
 
 fn drafts() -> impl Strategy<Value = Vec<Draft>> {
-    let kind = prop_oneof![Just(Kind::Source), Just(Kind::Copy), 2 => Just(Kind::Count)];
+    let kind = prop_oneof![1 => Just(Kind::Source), 1 => Just(Kind::Copy), 2 => Just(Kind::Count)];
     let draft = (kind, any::<usize>(), any::<bool>()).prop_map(|(kind, from, previous)| Draft { kind, from, previous });
     prop::collection::vec(draft, 1..9).prop_map(|mut drafts| {
         // A copy needs something to copy.

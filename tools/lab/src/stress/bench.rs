@@ -119,6 +119,7 @@ impl<'a> Bench<'a> {
             why: String::new(),
             labelled: false,
             seeds: 0,
+            truth_error: 0.0,
             bias: None,
             drift: None,
             worst_pixel: None,
@@ -266,6 +267,7 @@ impl Seen {
         row.seeds = self.judged.count();
         let Some(truth) = truths.last() else { return };
         row.bias = Some(bias(&self.judged, truth).into());
+        row.truth_error = Difference::normal(0.0, error_of_mean(truth)).relative_to(mean_luminance(truth)).standard_error;
         if self.looks == Looks::Still {
             let found = Estimate::from(&self.drift);
             let drift = Difference { value: found.mean, standard_error: found.standard_error, freedom: found.freedom };

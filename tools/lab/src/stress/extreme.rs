@@ -1,6 +1,6 @@
 //! Still scenes with numbers far from one.
 
-use super::{Case, Looks, Turned};
+use super::{Case, Known, Looks, Turned};
 use aquifer_scene::{Environment, Material, Node, PunctualShape, Scene};
 use aquifer_scenes::{
     build::{Place, Random, Shape, Stage, glow, matte, metal, plastic},
@@ -8,6 +8,8 @@ use aquifer_scenes::{
     gallery::furnace::furnace_of,
 };
 use glam::{Mat3, Quat, Vec3};
+
+const NOISE: &str = "one sample of a light a pixel, of which few matter: noise";
 
 /// Every still case.
 pub(super) const CASES: &[Case] = &[
@@ -19,7 +21,10 @@ pub(super) const CASES: &[Case] = &[
     Case { truth: Some(cornell), ..Case::still("scaled_down", "cornell scaled by 1e-3", || moved(1e-3, 0.0)) },
     Case { truth: Some(cornell), ..Case::still("scaled_up", "cornell scaled by 1e3", || moved(1e3, 0.0)) },
     Case::still("slivers", "needles of 1e-5 m, and triangles without area", slivers),
-    Case::still("grazing", "a long floor seen and lit at a grazing angle", grazing),
+    Case {
+        known: &[Known { graph: "light_sampling", why: NOISE }],
+        ..Case::still("grazing", "a long floor seen and lit at a grazing angle", grazing)
+    },
     Case::still("sharp_and_rough", "metal of α → 0 beside plastic of α = 1", sharp_and_rough),
     Case::still("black", "a room that reflects nothing", || boxed([0.0; 3])),
     Case::still("white", "a furnace: a white ball in even light", || furnace_of(matte("white", [1.0; 3]))),
@@ -120,6 +125,7 @@ fn slivers() -> Scene {
     let lamp = stage.material(glow("lamp", [6.0; 3]));
     let mut shape = Shape::new("all");
     let mut random = Random::new(5);
+    shape.quad(floor, Vec3::new(-2.0, 0.0, -2.0), Vec3::X * 4.0, Vec3::Y * 2.5);
     // A floor of long strips, each of two triangles.
     for i in 0..256 {
         let x = -2.0 + 4.0 * i as f32 / 256.0;

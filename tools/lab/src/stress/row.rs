@@ -34,6 +34,8 @@ pub struct Row {
     pub labelled: bool,
     /// Independent runs.
     pub seeds: u64,
+    /// Standard error of the truth's mean luminance, as a share of it.
+    pub truth_error: f64,
     /// Mean luminance less the truth's, as a share of the truth's, of the last frames looked at.
     pub bias: Option<Share>,
     /// Mean luminance of the last frames less that of the first ones, as a share of the truth's; of still cases.
@@ -136,12 +138,14 @@ impl Row {
         self.nan = counts.iter().map(|counts| counts.nan).sum();
         self.infinite = counts.iter().map(|counts| counts.infinite).sum();
         let sick = counts.iter().find(|counts| counts.nan + counts.infinite > 0);
-        let outside = |share: &Option<Share>| share.filter(|share| share.is_outside(self.labelled));
+        // Where not even the truth is known, its error is no good guess either.
+        let known = self.truth_error <= RESOLUTION * band(self.labelled);
+        let outside = |share: &Option<Share>| share.filter(|share| known && share.is_outside(self.labelled));
         let (outcome, why) = match (sick, outside(&self.bias), outside(&self.drift)) {
             (Some(PortCounts { pass, port, .. }), ..) => (Outcome::Failed, format!("NaN or infinity, first in `{pass}.{port}`")),
             (_, Some(bias), _) => (Outcome::Failed, format!("bias {}", bias.percent())),
             (.., Some(drift)) => (Outcome::Failed, format!("drift {}", drift.percent())),
-            _ if self.bias.is_some_and(|bias| !bias.is_resolved(self.labelled)) => {
+            _ if !known || self.bias.is_some_and(|bias| !bias.is_resolved(self.labelled)) => {
                 (Outcome::NotResolved, "more seeds are needed to say".to_owned())
             }
             _ => (Outcome::Passed, String::new()),
