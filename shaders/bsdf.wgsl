@@ -63,21 +63,28 @@ fn visibility(cos_v: f32, cos_l: f32, alpha: f32) -> f32 {
 /// f · cos of the direction l.
 fn bsdf_value(b: Bsdf, v: vec3<f32>, l: vec3<f32>) -> vec3<f32> {
     if (v.z <= 0.0 || l.z <= 0.0) { return vec3<f32>(0.0); }
-    let h = normalize(v + l);
-    let cos_vh = dot(v, h);
-    let f_d = schlick(b.f0, vec3<f32>(b.f90), cos_vh);
-    let f_m = schlick(b.base, vec3<f32>(1.0), cos_vh);
-    let diffuse = (1.0 - b.metallic) * (1.0 - max3(f_d)) * b.base * INV_PI;
-    let specular = mix(f_d, f_m, b.metallic) * (ggx(h, b.alpha) * visibility(v.z, l.z, b.alpha));
-    return (diffuse + specular) * l.z;
+    var diffuse = b.base;
+    var specular = vec3<f32>(0.0);
+    @if(glossy) {
+        let h = normalize(v + l);
+        let f_d = schlick(b.f0, vec3<f32>(b.f90), dot(v, h));
+        diffuse = (1.0 - b.metallic) * (1.0 - max3(f_d)) * b.base;
+        specular = reflected(b, f_d, dot(v, h)) * (ggx(h, b.alpha) * visibility(v.z, l.z, b.alpha));
+    }
+    return (diffuse * INV_PI + specular) * l.z;
+}
+
+/// Fresnel's share: of the dielectric `f_d`, mixed with the metal's.
+@if(glossy) fn reflected(b: Bsdf, f_d: vec3<f32>, cos_theta: f32) -> vec3<f32> {
+    @if(metals) { return mix(f_d, schlick(b.base, vec3<f32>(1.0), cos_theta), b.metallic); }
+    return f_d;
 }
 
 /// Probability of the specular lobe, from reflectances at the view direction. 0 and 1 only where the other lobe is black.
-fn specular_share(b: Bsdf, v: vec3<f32>) -> f32 {
-    let f_d = schlick(b.f0, vec3<f32>(b.f90), v.z);
-    let f_m = schlick(b.base, vec3<f32>(1.0), v.z);
-    let specular = luminance(mix(f_d, f_m, b.metallic));
+@if(glossy) fn specular_share(b: Bsdf, v: vec3<f32>) -> f32 {
+    let specular = luminance(reflected(b, schlick(b.f0, vec3<f32>(b.f90), v.z), v.z));
     let diffuse = luminance(b.base) * (1.0 - b.metallic);
+    if (specular <= 0.0) { return 0.0; }
     if (diffuse <= 0.0) { return 1.0; }
     return clamp(specular / (specular + diffuse), 0.1, 0.9);
 }
@@ -85,9 +92,12 @@ fn specular_share(b: Bsdf, v: vec3<f32>) -> f32 {
 /// By solid angle; what `bsdf_sample` draws from.
 fn bsdf_pdf(b: Bsdf, v: vec3<f32>, l: vec3<f32>) -> f32 {
     if (v.z <= 0.0 || l.z <= 0.0) { return 0.0; }
-    let h = normalize(v + l);
-    let specular = ggx(h, b.alpha) / (2.0 * smith(v.z, b.alpha));
-    return mix(pdf_cosine(l.z), specular, specular_share(b, v));
+    var pdf = pdf_cosine(l.z);
+    @if(glossy) {
+        let specular = ggx(normalize(v + l), b.alpha) / (2.0 * smith(v.z, b.alpha));
+        pdf = mix(pdf, specular, specular_share(b, v));
+    }
+    return pdf;
 }
 
 /// A visible normal: spherical cap, warped by α.
@@ -104,9 +114,11 @@ fn sample_visible_normal(v: vec3<f32>, alpha: f32, u: vec2<f32>) -> vec3<f32> {
 fn bsdf_sample(b: Bsdf, v: vec3<f32>, u: vec3<f32>) -> BsdfSample {
     if (v.z <= 0.0) { return BsdfSample(vec3<f32>(0.0, 0.0, 1.0), 0.0, vec3<f32>(0.0)); }
     var l = sample_cosine(u.xy);
-    if (u.z < specular_share(b, v)) {
-        let h = sample_visible_normal(v, b.alpha, u.xy);
-        l = 2.0 * dot(v, h) * h - v;
+    @if(glossy) {
+        if (u.z < specular_share(b, v)) {
+            let h = sample_visible_normal(v, b.alpha, u.xy);
+            l = 2.0 * dot(v, h) * h - v;
+        }
     }
     return BsdfSample(l, bsdf_pdf(b, v, l), bsdf_value(b, v, l));
 }

@@ -60,17 +60,15 @@ fn next_event(s: Surface, rng: ptr<function, Rng>) -> Incident {
 
 /// Emission met by a ray from `s` whose direction the BSDF drew with density `pdf`, weighted against next-event estimation.
 fn met(hit: Hit, ray: Ray, pdf: f32, s: Surface) -> Incident {
-    var light = NONE;
+    let light = light_of(hit);
     var radiance = vec3<f32>(0.0);
     var jacobian = 0.0;
     if (hit.instance == NONE) {
         @if(environment) {
-            light = light_count() - 1u;
             radiance = environment_radiance(ray.direction);
             jacobian = environment_jacobian(ray.direction);
         }
     } else {
-        light = light_of(hit);
         if (light != NONE) { radiance = emitted(hit, -ray.direction, s.when); }
         if (max3(radiance) > 0.0) { jacobian = jacobian_of(light, hit, s.position, s.when); }
     }

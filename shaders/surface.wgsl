@@ -8,7 +8,10 @@ import package::base::pack::{pack_half4, pack_unit, unpack_half4, unpack_unit};
 import package::bsdf::{Bsdf, BsdfSample, MIN_ALPHA, bsdf_pdf, bsdf_sample, bsdf_value};
 import package::frame::frame::{camera_at};
 import package::scene::geometry::{Instance, NONE, info_of, instance_at, normal_to_world, point_to_world, triangle_at, vector_to_world};
-import package::scene::material::{DOUBLE_SIDED, Material, UNLIT, emission_at, material_at, stored_material};
+import package::scene::material::{Material, material_at};
+@if(emissive_meshes) import package::scene::material::{emission_at, stored_material};
+@if(unlit) import package::scene::material::{UNLIT};
+@if(double_sided) import package::scene::material::{DOUBLE_SIDED};
 import package::scene::ray::{Hit, Ray, leave};
 @if(normal_maps) import package::base::table::{floats};
 @if(normal_maps) import package::scene::material::{interpolate, textured, uvs_of};
@@ -75,8 +78,9 @@ fn unpack_surface(r: SurfaceRecord, when: u32) -> Surface {
 
 fn bsdf_of(m: Material) -> Bsdf {
     let f0 = min(m.reflectance * m.specular_color, vec3<f32>(1.0)) * m.specular;
+    var lit = 1.0;
     // An unlit surface is shown as its base colour and scatters nothing.
-    let lit = select(1.0, 0.0, (m.flags & UNLIT) != 0u);
+    @if(unlit) { lit = select(1.0, 0.0, (m.flags & UNLIT) != 0u); }
     return Bsdf(m.base_color.rgb * lit, m.metallic * lit, f0 * lit, m.specular * lit, max(m.roughness * m.roughness, MIN_ALPHA));
 }
 
@@ -141,12 +145,16 @@ fn shading_normal(hit: Hit, instance: Instance, m: Material, view: vec3<f32>) ->
 
 /// Radiance that leaves the hit towards `view` because the surface itself emits: front faces, both sides where double-sided.
 fn emitted(hit: Hit, view: vec3<f32>, when: u32) -> vec3<f32> {
-    let id = info_of(hit.triangle).material;
-    let flags = stored_material(id).flags;
-    if ((flags & UNLIT) != 0u) { return vec3<f32>(0.0); }
-    let front = dot(front_normal(instance_at(hit.instance, when), hit.triangle), view) > 0.0;
-    if (!front && (flags & DOUBLE_SIDED) == 0u) { return vec3<f32>(0.0); }
-    return emission_at(id, hit.triangle, hit.barycentrics);
+    @if(emissive_meshes) {
+        let id = info_of(hit.triangle).material;
+        @if(unlit) {
+            if ((stored_material(id).flags & UNLIT) != 0u) { return vec3<f32>(0.0); }
+        }
+        var shines = dot(front_normal(instance_at(hit.instance, when), hit.triangle), view) > 0.0;
+        @if(double_sided) { shines = shines || (stored_material(id).flags & DOUBLE_SIDED) != 0u; }
+        if (shines) { return emission_at(id, hit.triangle, hit.barycentrics); }
+    }
+    return vec3<f32>(0.0);
 }
 
 /// What the camera sees of the surface's own: emission, or the base colour of an unlit one.

@@ -12,6 +12,7 @@
 #     tools/evidence.sh error_parts [SCENE …]
 #     tools/evidence.sh stress [CASE …]
 #     tools/evidence.sh long [GRAPH …]
+#     tools/evidence.sh leaving_out [MINUTES] [GRAPH@SCENE …]
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
@@ -22,6 +23,8 @@
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # light_change: error of ReSTIR GI by frame around a jump of the sun. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
+# leaving_out: every graph on every scene with and without what the scene does not need, and what that saves (with the machine to itself); some ten
+# seconds a pair, most of it the driver's compiler.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -53,6 +56,12 @@ restir_di_cost | restir_gi_cost)
 light_change | error_parts)
     cargo run --quiet -p aquifer-tests --example "$item" -- "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
+leaving_out)
+    cargo run --quiet -p aquifer-tests --example leaving_out -- costs docs/evidence/leaving_out_cost.json "$(git rev-parse HEAD)" "$(date -u +%F)" 10
+    minutes=${1:-120}
+    [ $# -eq 0 ] || shift
+    cargo run --quiet -p aquifer-tests --example leaving_out -- pairs docs/evidence/leaving_out.json "$(git rev-parse HEAD)" "$(date -u +%F)" "$minutes" "$@"
+    ;;
 stress | long)
     cargo build --quiet -p aquifer
     cargo run --quiet -p aquifer-tests --example stress_evidence -- "$item" target/debug/aquifer "docs/evidence/$item.json" \
@@ -60,7 +69,7 @@ stress | long)
     ;;
 *)
     echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change," \
-        "error_parts, stress, long" >&2
+        "error_parts, leaving_out, stress, long" >&2
     exit 2
     ;;
 esac

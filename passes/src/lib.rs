@@ -1,13 +1,13 @@
 //! The built-in passes: shaders of the tree, and the explicit list of those that have host code of their own.
 //!
-//! [`library`] holds the WGSL tree; [`registry`] cuts it to what a scene holds.
+//! [`library`] holds the WGSL tree; [`registry`] cuts it to what a scene holds, [`registry_keeping`] to no less than that.
 
 mod gbuffer;
 
 use aquifer_render::{Error, PassKind, Registry, SceneGlobals};
 use aquifer_scene::{Features, Scene};
 use aquifer_shader::Library;
-use std::{collections::BTreeSet, sync::Arc};
+use std::sync::Arc;
 
 /// Passes with host code, one file each. All others are files of `shaders/pass` and need no word here.
 pub const KINDS: &[PassKind] = &[gbuffer::KIND];
@@ -25,16 +25,24 @@ pub fn library() -> Library {
     library
 }
 
-/// Every kind of pass. With a finished scene, shaders are cut to what it holds; without one (for checking and listing) they assume nothing of it.
+/// Every kind of pass. With a finished scene, shaders are cut to what it holds; without one (for checking and listing) nothing is cut.
 ///
 /// # Errors
 /// [`Error::Globals`] for a scene that was not finished.
-pub fn registry(mut library: Library, scene: Option<&Scene>) -> Result<Registry, Error> {
-    let mut features = BTreeSet::new();
-    if let Some(scene) = scene {
-        let stack = SceneGlobals::stack_depth(scene)?;
-        library.insert(LIMITS, format!("const STACK: u32 = {stack}u;\n"), "the scene's limits");
-        features.extend(Features::of(scene).names().into_iter().map(str::to_owned));
+pub fn registry(library: Library, scene: Option<&Scene>) -> Result<Registry, Error> {
+    match scene {
+        Some(scene) => registry_keeping(library, scene, &Features::of(scene)),
+        None => Ok(Registry::new(Arc::new(library), KINDS, Default::default()).keeping(&Features::ALL)),
     }
-    Ok(Registry::new(Arc::new(library), KINDS, features))
+}
+
+/// Every kind of pass for a finished scene, its shaders cut to `features` instead of its facts. [`SceneGlobals::keeping`] has what they ask for.
+///
+/// # Errors
+/// As [`registry`].
+pub fn registry_keeping(mut library: Library, scene: &Scene, features: &Features) -> Result<Registry, Error> {
+    let stack = SceneGlobals::stack_depth(scene, features)?;
+    library.insert(LIMITS, format!("const STACK: u32 = {stack}u;\n"), "the scene's limits");
+    let facts = Features::of(scene).names().into_iter().map(str::to_owned).collect();
+    Ok(Registry::new(Arc::new(library), KINDS, facts).keeping(features))
 }

@@ -25,6 +25,8 @@ struct Frame {
     seed: vec2<u32>,
     /// Lights that can be drawn; 0 when nothing shines.
     lights: u32,
+    /// 1 where lights or objects move: what was found in earlier frames may hold no longer.
+    moving: u32,
     camera: Camera,
     camera_prev: Camera,
 }

@@ -6,10 +6,13 @@
 //! @default
 
 import package::base::math::{HUGE, PI, luminance, max3};
-import package::base::sampling::{sample_triangle, triangle_uv};
+import package::base::sampling::{triangle_uv};
+@if(emissive_meshes) import package::base::sampling::{sample_triangle};
 import package::frame::frame::{NOW, frame};
-import package::scene::geometry::{NONE, info_of, instance_at, is_solid, point_to_world, triangle_at};
-import package::scene::material::{DOUBLE_SIDED, emission_at, stored_material};
+import package::scene::geometry::{NONE};
+@if(emissive_meshes) import package::scene::geometry::{info_of, instance_at, is_solid, point_to_world, triangle_at};
+@if(emissive_meshes) import package::scene::material::{emission_at};
+@if(emissive_meshes && double_sided) import package::scene::material::{DOUBLE_SIDED, stored_material};
 import package::scene::ray::{Hit, Ray, RELATIVE_ERROR};
 @if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance, environment_uv};
 @if(punctual_lights) import package::scene::punctual::{Punctual, punctual_at, punctual_falloff};
@@ -90,10 +93,11 @@ fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
             return p;
         }
     }
-    return triangle_point(light, id, sample_triangle(uv), when);
+    @if(emissive_meshes) { return triangle_point(light, id, sample_triangle(uv), when); }
+    return p;
 }
 
-fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> LightPoint {
+@if(emissive_meshes) fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> LightPoint {
     let instance = instance_at(light.index, when);
     let t = triangle_at(light.triangle);
     let a = point_to_world(instance, t.a);
@@ -107,7 +111,7 @@ fn triangle_point(light: Light, id: u32, barycentrics: vec2<f32>, when: u32) -> 
     // One that was squashed is in no hierarchy and shines nowhere, but may still be remembered.
     p.area = select(0.0, 0.5 * length(n), is_solid(instance));
     p.emission = emission_at(material, light.triangle, barycentrics);
-    p.double_sided = (stored_material(material).flags & DOUBLE_SIDED) != 0u;
+    @if(double_sided) { p.double_sided = (stored_material(material).flags & DOUBLE_SIDED) != 0u; }
     p.size = max(max3(abs(a)), max(max3(abs(b)), max3(abs(c))));
     p.light = id;
     p.when = when;
@@ -146,10 +150,16 @@ fn shadow_ray(origin: vec3<f32>, p: LightPoint) -> Ray {
     return Ray(origin, distance, d / distance);
 }
 
-/// Which light a ray's end belongs to, or `NONE`: a ray that hits nothing ends at the environment, the last of the lights.
+/// The environment is the last of the lights; `NONE` where there is none, or a black one.
+@if(environment) fn environment_light() -> u32 {
+    let last = max(light_count(), 1u) - 1u;
+    return select(NONE, last, lights[last].kind == ENVIRONMENT);
+}
+
+/// Which light a ray's end belongs to, or `NONE`: a ray that hits nothing ends at the environment.
 fn light_of(hit: Hit) -> u32 {
     if (hit.instance == NONE) {
-        @if(environment) { return light_count() - 1u; }
+        @if(environment) { return environment_light(); }
         return NONE;
     }
     @if(emissive_meshes) {
@@ -161,7 +171,8 @@ fn light_of(hit: Hit) -> u32 {
 
 /// dω/duv of light `id` at a hit of a ray along unit `direction` that began at `origin`.
 fn jacobian_of(id: u32, hit: Hit, origin: vec3<f32>, when: u32) -> f32 {
-    return arrive(triangle_point(lights[id], id, hit.barycentrics, when), origin).jacobian;
+    @if(emissive_meshes) { return arrive(triangle_point(lights[id], id, hit.barycentrics, when), origin).jacobian; }
+    return 0.0;
 }
 
 /// The uv that `light_point` has a hit at; of a ray that hit nothing, that of its direction.

@@ -20,7 +20,7 @@ struct Params {
 @group(1) @binding(1) var<storage, read> surface: array<SurfaceRecord>;
 /// Only read by channel `motion`.
 /// @optional
-@group(1) @binding(2) var<storage, read> motion: array<vec2<f32>>;
+@if(moving_camera || moving_objects) @group(1) @binding(2) var<storage, read> motion: array<vec2<f32>>;
 /// The picture; black where nothing was hit.
 @group(1) @binding(3) var<storage, read_write> color: array<vec4<f32>>;
 
@@ -47,7 +47,10 @@ fn label(id: u32) -> vec3<f32> {
         case 5u: { c = vec3<f32>(record.distance / params.scale); }
         case 6u: { c = label(record.instance); }
         case 7u: { c = label(record.triangle); }
-        case 8u: { c = vec3<f32>(motion[at] / params.scale * 0.5 + 0.5, 0.5); }
+        case 8u: {
+            c = vec3<f32>(0.5);
+            @if(moving_camera || moving_objects) { c = vec3<f32>(motion[at] / params.scale * 0.5 + 0.5, 0.5); }
+        }
         default: {}
     }
     color[at] = vec4<f32>(c, 1.0);

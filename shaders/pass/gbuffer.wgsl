@@ -8,8 +8,10 @@
 //! corners to a fraction of a pixel (1/256 is usual): next to an edge it may take the neighbour. A hit outside of the triangle that
 //! was taken is moved to its rim.
 
-import package::frame::frame::{BEFORE, NOW, camera_at, camera_direction, film_sample, frame, index_of, inside, project};
-import package::scene::geometry::{Instance, Triangle, instance_at, point_to_object, point_to_world, position_of, triangle_at, vector_to_object};
+import package::base::math::{HUGE};
+import package::frame::frame::{NOW, camera_direction, film_sample, frame, index_of, inside};
+@if(moving_camera || moving_objects) import package::motion::{motion_of};
+import package::scene::geometry::{Instance, NONE, Triangle, instance_at, point_to_object, point_to_world, triangle_at, vector_to_object};
 import package::scene::ray::{Hit};
 import package::surface::{SurfaceRecord, no_surface, pack_surface, surface_at};
 @if(alpha) import package::scene::alpha::{stops};
@@ -17,7 +19,7 @@ import package::surface::{SurfaceRecord, no_surface, pack_surface, surface_at};
 /// What the pixel sees, 64 bytes.
 @group(1) @binding(0) var<storage, read_write> surface: array<SurfaceRecord>;
 /// From this frame's film position of the surface to last frame's, pixels, without jitter. (0, 0) where it was behind the camera.
-@group(1) @binding(1) var<storage, read_write> motion: array<vec2<f32>>;
+@if(moving_camera || moving_objects) @group(1) @binding(1) var<storage, read_write> motion: array<vec2<f32>>;
 /// Number of the instance plus one, and of the triangle; zeros where nothing was drawn.
 @group(1) @binding(2) var seen: texture_2d<u32>;
 
@@ -94,18 +96,15 @@ fn onto(barycentrics: vec2<f32>) -> vec2<f32> {
 @compute @workgroup_size(8, 8) fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
     let found = textureLoad(seen, id.xy, 0).xy;
-    let film = film_sample(frame.camera, id.xy);
-    let direction = camera_direction(frame.camera, film);
+    let direction = direction_of(id.xy);
     let at = index_of(id.xy);
-    var before = frame.camera_prev.position + direction;
+    var hit = Hit(HUGE, NONE, 0u, vec2<f32>(0.0));
     if (found.x == 0u) {
         surface[at] = no_surface(direction);
     } else {
         let met = meet(found.x - 1u, found.y, direction);
-        let hit = Hit(met.x, found.x - 1u, found.y, onto(met.yz));
+        hit = Hit(met.x, found.x - 1u, found.y, onto(met.yz));
         surface[at] = pack_surface(surface_at(hit, -direction, NOW), hit.t);
-        before = position_of(hit.instance, hit.triangle, hit.barycentrics, BEFORE);
     }
-    let there = project(camera_at(BEFORE), before);
-    motion[at] = select(vec2<f32>(0.0), there.xy - film, there.z > 0.0);
+    @if(moving_camera || moving_objects) { motion[at] = motion_of(hit, direction); }
 }

@@ -3,9 +3,11 @@
 //! Bitterli et al. 2020, alg. 3. Whether a ray then tests the sample that was kept is slot `visibility`'s to say. In a frame of validation a pixel
 //! that has a history does not draw: it finds what its history's sample stands for anew, from the same random numbers, and where that has
 //! changed, or the sample is hidden, says so on `stale`. The pass that made the history, and those after it, then let it go
-//! (Ouyang et al. 2021, § 5).
+//! (Ouyang et al. 2021, § 5). Where neither lights nor objects move, nothing is validated.
+//! @needs emissive_meshes punctual_lights environment
 
-import package::frame::frame::{NOW, frame, index_of, inside};
+import package::frame::frame::{NOW, index_of, inside};
+@if(moving_lights || moving_objects) import package::frame::frame::{frame};
 import package::frame::random::{rng_for};
 import package::restir::inputs::{history, surface};
 import package::restir::neighbour::{NOWHERE, similarity};
@@ -42,11 +44,11 @@ override validate_every: u32 = 0u;
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels; for validation.
 /// @optional
-@group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
+@if(moving_lights || moving_objects) @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
 /// What was kept; of confidence 1, or 0 where nothing was drawn.
 @group(1) @binding(2) var<storage, read_write> reservoir: array<Reservoir>;
 /// 1 where the pixel's history holds no longer.
-@group(1) @binding(3) var<storage, read_write> stale: array<u32>;
+@if(moving_lights || moving_objects) @group(1) @binding(3) var<storage, read_write> stale: array<u32>;
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
@@ -56,18 +58,21 @@ override validate_every: u32 = 0u;
     var lost = false;
     if (is_surface(record)) {
         var rng = rng_for(id.xy);
-        var before = NOWHERE;
-        if (validate_every > 0u && frame.index % max(validate_every, 1u) == 0u) {
-            before = pixel_before(id.xy, motion[at], record, exactly(), similarity(params.normal, params.depth), &rng);
-        }
         let s = unpack_surface(record, NOW);
-        if (before != NOWHERE && history[before].weight.value > 0.0) {
-            let sample = history[before].sample;
-            lost = changed(sample, params.tolerance) || !visible(sample, s);
-        } else {
-            kept = resample(s, candidates, &rng);
+        var draws = true;
+        @if(moving_lights || moving_objects) {
+            var before = NOWHERE;
+            if (validate_every > 0u && frame.moving != 0u && frame.index % max(validate_every, 1u) == 0u) {
+                before = pixel_before(id.xy, motion[at], record, exactly(), similarity(params.normal, params.depth), &rng);
+            }
+            if (before != NOWHERE && history[before].weight.value > 0.0) {
+                let sample = history[before].sample;
+                lost = changed(sample, params.tolerance) || !visible(sample, s);
+                draws = false;
+            }
         }
+        if (draws) { kept = resample(s, candidates, &rng); }
     }
     reservoir[at] = kept;
-    stale[at] = u32(lost);
+    @if(moving_lights || moving_objects) { stale[at] = u32(lost); }
 }

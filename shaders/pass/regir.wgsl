@@ -3,6 +3,7 @@
 //! Boksansky, Jukarainen and Wyman 2021, "Rendering Many Lights with Grid-Based Reservoirs" (Ray Tracing Gems II, ch. 23). Each slot keeps one of several
 //! power-proportional candidates, by resampling with the light that reaches the cell, without cosines, as its target. The target is positive at every
 //! point of a light that reaches any receiver of the cell, so that the contribution weights are unbiased for all of them.
+//! @needs emissive_meshes punctual_lights environment
 
 import package::base::math::{luminance};
 import package::base::rng::{rng_bits, rng_next4};

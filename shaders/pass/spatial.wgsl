@@ -5,6 +5,7 @@
 //! while it counts little more pixels are asked, and their results of last frame too (Ouyang et al. 2021, alg. 4). The paper's listing leaves
 //! the pixel's own temporal reservoir out; here it is always the canonical input, which alone covers all that the pixel can use.
 //! With an unbiased rule in slot `mis` the pass is unbiased: who is asked depends on the g-buffer and on confidences, never on a sample.
+//! @needs emissive_meshes punctual_lights environment
 
 import package::base::math::{HUGE};
 import package::base::rng::{rng_next4};
@@ -70,12 +71,22 @@ const R2 = vec2<f32>(0.7548776662, 0.5698402910);
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels.
 /// @optional
-@group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
+@if(moving_camera || moving_objects) @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
 /// 1 where the pixel's history must go; `initial` finds out by validation.
 /// @optional
-@group(1) @binding(2) var<storage, read> stale: array<u32>;
+@if(moving_lights || moving_objects) @group(1) @binding(2) var<storage, read> stale: array<u32>;
 /// Joined.
 @group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
+
+fn moved(pixel: u32) -> vec2<f32> {
+    @if(moving_camera || moving_objects) { return motion[pixel]; }
+    return vec2<f32>(0.0);
+}
+
+fn is_stale(pixel: u32) -> bool {
+    @if(moving_lights || moving_objects) { return stale[pixel] != 0u; }
+    return false;
+}
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
@@ -92,8 +103,8 @@ const R2 = vec2<f32>(0.7548776662, 0.5698402910);
     inputs[0] = input_of(at, NOW, HUGE);
     var count = 1u;
     var own = 0.0;
-    let before = pixel_before(id.xy, motion[at], record, exact, limits, &rng);
-    if (before != NOWHERE && stale[at] == 0u) {
+    let before = pixel_before(id.xy, moved(at), record, exact, limits, &rng);
+    if (before != NOWHERE && !is_stale(at)) {
         inputs[1] = input_of(before, BEFORE, params.cap);
         own = inputs[1].confidence;
         // What counts nothing is no input: where no history is wired, its surfaces are zeros.
@@ -111,8 +122,8 @@ const R2 = vec2<f32>(0.7548776662, 0.5698402910);
         }
         inputs[count] = input_of(other, NOW, HUGE);
         count += 1u;
-        if (!few || stale[other] != 0u) { continue; }
-        let other_before = pixel_before(pixel_of(other), motion[other], surface[other], exact, limits, &rng);
+        if (!few || is_stale(other)) { continue; }
+        let other_before = pixel_before(pixel_of(other), moved(other), surface[other], exact, limits, &rng);
         if (other_before != NOWHERE) {
             inputs[count] = input_of(other_before, BEFORE, params.cap);
             count += u32(inputs[count].confidence > 0.0);

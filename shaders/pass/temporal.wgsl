@@ -3,6 +3,7 @@
 //! Bitterli et al. 2020, § 3.2 and § 5. The pixel of last frame is found by the motion of the surface; where it is not like this one, pixels around it are
 //! tried. Last frame's targets are evaluated in last frame's world: its camera, g-buffer, transforms, lights and hierarchy. Which history is taken
 //! depends on the g-buffer alone, and capping its confidence changes no weight: with an unbiased rule in slot `mis` the pass is unbiased.
+//! @needs emissive_meshes punctual_lights environment
 
 import package::base::math::{HUGE};
 import package::frame::frame::{BEFORE, NOW, index_of, inside};
@@ -42,10 +43,10 @@ override permute: bool = false;
 
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels.
-@group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
+@if(moving_camera || moving_objects) @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
 /// 1 where the pixel's history must go; `initial` finds out by validation.
 /// @optional
-@group(1) @binding(2) var<storage, read> stale: array<u32>;
+@if(moving_lights || moving_objects) @group(1) @binding(2) var<storage, read> stale: array<u32>;
 /// Both joined.
 @group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
 
@@ -59,8 +60,13 @@ override permute: bool = false;
     }
     var rng = rng_for(id.xy);
     let limits = similarity(params.normal, params.depth);
-    let before = pixel_before(id.xy, motion[at], record, Search(tries, params.search, permute), limits, &rng);
-    if (before == NOWHERE || stale[at] != 0u) {
+    var moved = vec2<f32>(0.0);
+    @if(moving_camera || moving_objects) { moved = motion[at]; }
+    var before = pixel_before(id.xy, moved, record, Search(tries, params.search, permute), limits, &rng);
+    @if(moving_lights || moving_objects) {
+        if (stale[at] != 0u) { before = NOWHERE; }
+    }
+    if (before == NOWHERE) {
         reservoir[at] = current[at];
         return;
     }

@@ -21,6 +21,11 @@ impl Evidence {
         Evidence { path: path.into(), about, rows }
     }
 
+    /// Is there a row of this key?
+    pub fn has(&self, key: &Value) -> bool {
+        self.rows.iter().any(|row| key.as_object().is_some_and(|key| key.iter().all(|(name, value)| row[name] == *value)))
+    }
+
     /// The rows so far that were made with this commit.
     pub fn rows(&self) -> impl Iterator<Item = &Value> {
         self.rows.iter().filter(|row| row["commit"] == self.about["commit"])

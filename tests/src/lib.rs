@@ -2,13 +2,14 @@
 
 pub mod cost;
 pub mod evidence;
+pub mod leaving_out;
 pub mod references;
 pub mod seeds;
 
-use aquifer_graph::{Document, Graph, NeedsAll, Shelf, Source};
+use aquifer_graph::{Document, Graph, Needs, NeedsAll, Shelf, Source};
 use aquifer_lab::{capture::Capture, film::Film};
 use aquifer_render::{Context, ContextOptions, Renderer, RendererOptions, SceneGlobals, View};
-use aquifer_scene::Scene;
+use aquifer_scene::{Features, Scene};
 use std::sync::{Arc, OnceLock};
 
 /// The adapter, opened once a process; `None` where there is none, unless AQUIFER_REQUIRE_ADAPTER=1 forbids that.
@@ -49,12 +50,36 @@ pub struct Parts<'a> {
     pub seed: u64,
     /// Number of the first frame.
     pub first_frame: u32,
+    /// What is not left out.
+    pub kept: Kept,
+}
+
+/// How much of a renderer a scene may do without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// What the scene needs.
+    Needed,
+    /// Every pass and every array; shaders are cut to the scene.
+    Resources,
+    /// Everything.
+    All,
 }
 
 impl<'a> Parts<'a> {
     /// 64×36 pixels, seed 0, nothing special.
     pub fn new(scene: &'a Arc<Scene>, graph: &'a str) -> Self {
-        Parts { scene, graph, shaders: &[], settings: &[], keep: &[], view: View::default(), size: [64, 36], seed: 0, first_frame: 0 }
+        Parts {
+            scene,
+            graph,
+            shaders: &[],
+            settings: &[],
+            keep: &[],
+            view: View::default(),
+            size: [64, 36],
+            seed: 0,
+            first_frame: 0,
+            kept: Kept::Needed,
+        }
     }
 
     /// A renderer of these parts.
@@ -87,15 +112,20 @@ impl<'a> Parts<'a> {
         for (path, text) in self.shaders {
             library.insert(*path, *text, format!("test:{path}.wgsl"));
         }
-        let registry = aquifer_passes::registry(library, Some(self.scene)).expect("the scene is finished");
+        let facts = Features::of(self.scene);
+        let texts = if self.kept == Kept::All { Features::ALL } else { facts };
+        let registry = aquifer_passes::registry_keeping(library, self.scene, &texts).expect("the scene is finished");
         let files = Shelf::new("", aquifer_graphs::files());
         let mut document = Document::parse(Source::new("test.toml", self.graph), &files).unwrap_or_else(|faults| panic!("{faults}"));
         document.apply(self.settings.iter().map(|text| Source::new("--set", *text))).unwrap_or_else(|faults| panic!("{faults}"));
         let graph = Graph::check(&document, &registry).unwrap_or_else(|faults| panic!("{faults}"));
         let capture = Capture::of(&graph);
         let keep: Vec<&str> = self.keep.iter().copied().chain(capture.keep()).collect();
-        let plan = graph.plan(&NeedsAll, &keep).expect("a checked graph has a plan");
-        let globals = SceneGlobals::new(context, self.scene.clone(), self.view.clone()).unwrap_or_else(|error| panic!("{error}"));
+        let needs: &dyn Needs = if self.kept == Kept::Needed { &registry } else { &NeedsAll };
+        let plan = graph.plan(needs, &keep).expect("a checked graph has a plan");
+        let arrays = if self.kept == Kept::Needed { facts } else { Features::ALL };
+        let globals =
+            SceneGlobals::keeping(context, self.scene.clone(), self.view.clone(), &arrays).unwrap_or_else(|error| panic!("{error}"));
         let options = RendererOptions { size: self.size, seed: self.seed, first_frame: self.first_frame, ..RendererOptions::default() };
         let renderer = Renderer::new(context, &registry, plan, Box::new(globals), options).unwrap_or_else(|error| panic!("{error}"));
         (renderer, capture)

@@ -8,6 +8,8 @@ mod determinism;
 mod furnace;
 #[path = "gpu/gbuffer.rs"]
 mod gbuffer;
+#[path = "gpu/leaving_out.rs"]
+mod leaving_out;
 #[path = "gpu/light_grid.rs"]
 mod light_grid;
 #[path = "gpu/moving.rs"]

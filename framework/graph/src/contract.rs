@@ -19,6 +19,10 @@ pub struct Contract {
     pub slots: Vec<String>,
     /// What can bias the result.
     pub bias: Vec<Bias>,
+    /// Facts of which the scene must have one for the pass to make anything; none: it makes something of every scene.
+    pub needs: Vec<String>,
+    /// Ports that the pass has only in other scenes, each with what this one lacks.
+    pub absent: BTreeMap<String, String>,
 }
 
 /// A place for a wire.

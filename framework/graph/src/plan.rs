@@ -19,7 +19,7 @@ pub struct Plan {
     pub output: usize,
     /// What was asked to be kept for reading back, in the order asked.
     pub kept: Vec<Kept>,
-    /// Passes that do not run, with the reason.
+    /// Passes that do not run, and ports that passes do without, with the reasons.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -109,11 +109,14 @@ pub struct Kept {
     pub resource: Option<ResourceHalf>,
 }
 
-/// A pass that does not run.
+/// A pass that does not run, or a port that a pass does without.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
     /// The node.
     pub node: String,
+    /// The port; `None` for the whole pass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub port: Option<String>,
     /// In words.
     pub reason: String,
 }

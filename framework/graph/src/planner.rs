@@ -74,7 +74,7 @@ impl Graph {
         let allotter = Allotter::new(&left.nodes, &needed);
         left.refuse_clash(&needed)?;
         let mut plan = allotter.plan(self, output, &left.goals[1..], keep)?;
-        plan.left_out = self.verdicts(left.left_out, &needed);
+        plan.left_out = self.verdicts(&left.left_out, &needed);
         debug_assert_eq!(plan.verify(), Ok(()));
         Ok(plan)
     }
@@ -118,14 +118,19 @@ impl Graph {
         PlanError::NoOutput { node: node.clone(), reason: reason.to_owned() }
     }
 
-    /// Everything that does not run, in the order of the file.
-    fn verdicts(&self, left_out: Vec<LeftOut>, needed: &BTreeSet<usize>) -> Vec<LeftOut> {
-        let verdict = |(index, node): (usize, &Node)| {
-            let told = left_out.iter().find(|left| left.node == node.name).cloned();
-            let culled = || (!needed.contains(&index)).then(|| LeftOut { node: node.name.clone(), reason: CULLED.to_owned() });
-            told.or_else(culled)
+    /// Everything that does not run, in the order of the file; of what runs, the ports that it does without.
+    fn verdicts(&self, left_out: &[LeftOut], needed: &BTreeSet<usize>) -> Vec<LeftOut> {
+        let verdict = |(index, node): (usize, &Node)| -> Vec<LeftOut> {
+            let of_node = |left: &&LeftOut| left.node == node.name;
+            if let Some(told) = left_out.iter().filter(of_node).find(|left| left.port.is_none()) {
+                return vec![told.clone()];
+            }
+            if !needed.contains(&index) {
+                return vec![LeftOut { node: node.name.clone(), port: None, reason: CULLED.to_owned() }];
+            }
+            left_out.iter().filter(of_node).cloned().collect()
         };
-        self.nodes.iter().enumerate().filter_map(verdict).collect()
+        self.nodes.iter().enumerate().flat_map(verdict).collect()
     }
 }
 
@@ -211,6 +216,9 @@ impl<'a> Allotter<'a> {
     fn make_resources(&mut self) {
         for &node in &self.order {
             for (index, port) in self.nodes[node].contract.ports.iter().enumerate() {
+                if self.nodes[node].contract.absent.contains_key(&port.name) {
+                    continue;
+                }
                 let clear = port.direction == Direction::InOut && self.nodes[node].wires[index].is_none();
                 if port.direction == Direction::Out || clear {
                     let root = PortId { node, port: index };

@@ -92,7 +92,8 @@ impl Plan {
     ) -> Result<(), Inconsistent> {
         let name = format!("{}.{}", step.node, port.name);
         let Some(half) = half else {
-            return if port.direction == Direction::In { Ok(()) } else { Err(Inconsistent::Unbound { port: name }) };
+            let may_be = port.direction == Direction::In || step.contract.absent.contains_key(&port.name);
+            return if may_be { Ok(()) } else { Err(Inconsistent::Unbound { port: name }) };
         };
         let Some(resource) = self.resources.get(half.resource) else { return Err(Inconsistent::NoResource { port: name }) };
         if resource.ty != port.ty {

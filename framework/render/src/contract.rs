@@ -6,19 +6,22 @@ use crate::{
 };
 use aquifer_graph::{Bias, Contract, Direction, Extent, Param, Port, Value, WireType};
 use aquifer_shader::{Binding, Interface, Layout, Member, Override, ResourceKind, Scalar};
+use std::collections::BTreeSet;
 
-/// The contract of a shader; the text of an error names what is wrong in it.
-pub(crate) fn contract(interface: &Interface) -> Result<Contract, String> {
+/// The contract of a shader in a scene of these facts; the text of an error names what is wrong in it.
+pub(crate) fn contract(interface: &Interface, facts: &BTreeSet<String>) -> Result<Contract, String> {
     let own = interface.bindings.iter().filter(|binding| binding.group == 1);
     let drawn: Vec<&str> = outputs(interface).iter().map(|output| output.name.as_str()).collect();
     let mut contract = Contract {
         about: first_sentence(&interface.manual),
         slots: interface.slots.iter().map(|(slot, _)| slot.clone()).collect(),
+        needs: interface.needs.clone(),
         ..Contract::default()
     };
     for note in &interface.bias {
         let slot = slot_of(interface, &note.module);
-        let (why, given, without) = (note.why.clone(), note.given.clone(), note.without.clone());
+        let given = note.given.clone().filter(|fact| !facts.contains(fact));
+        let (why, without) = (note.why.clone(), note.without.clone());
         contract.bias.push(Bias { slot, why, given, without, ..Bias::default() });
     }
     for binding in own {
@@ -241,7 +244,7 @@ mod tests {
             ],
             ..Interface::default()
         };
-        let contract = contract(&interface).unwrap();
+        let contract = contract(&interface, &BTreeSet::new()).unwrap();
         assert_eq!(contract.about, "Does one thing.");
         let found: Vec<_> = contract.ports.iter().map(|port| (port.direction, port.ty.extent.clone(), port.optional)).collect();
         assert_eq!(
@@ -287,7 +290,7 @@ mod tests {
             overrides: vec![baked("taps", Some(5.0)), baked("derived", None), baked("random_stage", Some(0.0))],
             ..Interface::default()
         };
-        let contract = contract(&interface).unwrap();
+        let contract = contract(&interface, &BTreeSet::new()).unwrap();
         let found: Vec<_> = contract.params.iter().map(|param| (param.name.as_str(), param.default, param.live)).collect();
         assert_eq!(found, [("exposure", Value::F32(1.5), true), ("curve", Value::U32(1), true), ("taps", Value::U32(5), false)]);
         assert_eq!(contract.params[0].range, Some((-8.0, 8.0)));
@@ -299,7 +302,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_a_port_or_an_extent_is_refused_by_name() {
-        let refused = |binding| contract(&Interface { bindings: vec![binding], ..Interface::default() }).unwrap_err();
+        let refused = |binding| contract(&Interface { bindings: vec![binding], ..Interface::default() }, &BTreeSet::new()).unwrap_err();
         let texture = ResourceKind::Texture { ty: "texture_2d<f32>".to_owned() };
         assert!(refused(binding("image", texture, (true, false), &[])).contains("`image` in group 1 is no port"));
         for text in ["tiles 0 8", "fixed", "fixed -1", "rows"] {

@@ -159,7 +159,8 @@ fn settle(plan: &Plan, bytes: &[u64], blocks: &Blocks) -> (Vec<Home>, Vec<(Strin
 
 /// Bytes of every port of a step that reads zeros.
 fn unwired_inputs(step: &Step, size: [u32; 2]) -> impl Iterator<Item = u64> {
-    let unwired = step.contract.ports.iter().filter(|port| step.resource(&port.name).is_none());
+    let contract = &step.contract;
+    let unwired = contract.ports.iter().filter(|port| !contract.absent.contains_key(&port.name) && step.resource(&port.name).is_none());
     unwired.map(move |port| bytes(&port.ty, size))
 }
 

@@ -1,8 +1,9 @@
 //! Every kind of pass, with its contract.
 
 use crate::{KernelPass, Pass, PassError, PassKind, contract::contract};
-use aquifer_graph::{Contract, ContractError, Contracts, Slots, Step};
-use aquifer_shader::{Composed, Library, ShaderError, Specialisation};
+use aquifer_graph::{Contract, ContractError, Contracts, Needs, Node, Slots, Step, Verdict};
+use aquifer_scene::Features;
+use aquifer_shader::{Composed, Cut, Library, Piece, ShaderError, Specialisation};
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
     sync::{Arc, Mutex, PoisonError},
@@ -12,10 +13,16 @@ use std::{
 const FOLDER: &str = "pass";
 
 /// Kinds of passes: an explicit list, then every file of the library's folder `pass`. Shaders are composed once for each filling of slots.
+///
+/// A pass has the same contract in every scene. What of it a scene does not need is said there too: its text is cut by `@if`, the ports that go with it
+/// are [absent](Contract::absent), and as [`Needs`] the registry lets passes go that would make nothing.
 #[derive(Debug)]
 pub struct Registry {
     library: Arc<Library>,
     kinds: Vec<PassKind>,
+    /// What holds of the scene.
+    facts: BTreeSet<String>,
+    /// What shaders are composed for: the facts, or more to leave less out.
     features: BTreeSet<String>,
     /// Every slot with its fillings, and what fills it when nothing is said.
     slots: BTreeMap<String, Vec<String>>,
@@ -33,10 +40,15 @@ pub struct Known {
 }
 
 impl Registry {
-    /// Kinds with host code of their own, over the library's files; `features` are the facts of the scene that shaders are specialised for.
-    pub fn new(library: Arc<Library>, kinds: &[PassKind], features: BTreeSet<String>) -> Self {
+    /// Kinds with host code of their own, over the library's files; `facts` are those of the scene that shaders are cut to.
+    pub fn new(library: Arc<Library>, kinds: &[PassKind], facts: BTreeSet<String>) -> Self {
         let (slots, defaults) = (library.slots(), library.default_slots());
-        Registry { library, kinds: kinds.to_vec(), features, slots, defaults, composed: Mutex::default() }
+        Registry { library, kinds: kinds.to_vec(), features: facts.clone(), facts, slots, defaults, composed: Mutex::default() }
+    }
+
+    /// Cuts shaders to these features instead, be they facts of the scene or not.
+    pub fn keeping(self, features: &Features) -> Self {
+        Registry { features: owned(features), ..self }
     }
 
     /// The library.
@@ -71,8 +83,17 @@ impl Registry {
             return Ok(known.clone());
         }
         let composed = self.library.compose(&what).map_err(|error| self.refused(name, error))?;
-        let mut contract =
-            contract(&composed.interface).map_err(|message| ContractError::Shader(format!("{}.wgsl: {message}", kind.shader)))?;
+        let read = |composed: &Composed| {
+            let refused = |message| ContractError::Shader(format!("{}.wgsl: {message}", kind.shader));
+            contract(&composed.interface, &self.facts).map_err(refused)
+        };
+        let mut contract = read(&composed)?;
+        if composed.cuts.iter().any(is_port) {
+            let here = std::mem::take(&mut contract);
+            let whole = Specialisation { features: owned(&Features::ALL), ..what.clone() };
+            contract = read(&self.library.compose(&whole).map_err(|error| self.refused(name, error))?)?;
+            contract.absent = absent(&contract, &here, &composed.cuts);
+        }
         if !kind.about.is_empty() {
             contract.about = kind.about.to_owned();
         }
@@ -104,6 +125,45 @@ impl Registry {
             }
             other => ContractError::Shader(other.to_string()),
         }
+    }
+}
+
+fn owned(features: &Features) -> BTreeSet<String> {
+    features.names().into_iter().map(str::to_owned).collect()
+}
+
+fn is_port(cut: &Cut) -> bool {
+    matches!(cut.piece, Piece::Binding { group: 1, .. })
+}
+
+/// Ports of `whole` that are not `here`, each with what the scene lacks: what the port's own `@if` asks for, or those of the ports that went with it.
+fn absent(whole: &Contract, here: &Contract, cuts: &[Cut]) -> BTreeMap<String, String> {
+    let gone = whole.ports.iter().filter(|port| here.ports.iter().all(|other| other.name != port.name));
+    let reason = |name: &str| {
+        let own = |cut: &&Cut| matches!(&cut.piece, Piece::Binding { name: bound, .. } if bound == name);
+        let ports = || cuts.iter().filter(|cut| is_port(cut));
+        let facts: BTreeSet<&str> = match ports().find(own) {
+            Some(cut) => cut.facts().collect(),
+            None => ports().flat_map(Cut::facts).collect(),
+        };
+        lacks(facts)
+    };
+    gone.map(|port| (port.name.clone(), reason(&port.name))).collect()
+}
+
+/// As people read it.
+fn lacks<'a>(facts: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<String> = facts.into_iter().map(|fact| fact.replace('_', " ")).collect();
+    format!("the scene has no {}", names.join(", no "))
+}
+
+impl Needs for Registry {
+    fn verdict(&self, node: &Node) -> Verdict {
+        let needs = &node.contract.needs;
+        if needs.is_empty() || needs.iter().any(|fact| self.features.contains(fact)) {
+            return Verdict::Run;
+        }
+        Verdict::LeaveOut { reason: lacks(needs.iter().map(String::as_str)), stand_in: BTreeMap::new() }
     }
 }
 

@@ -58,9 +58,17 @@ impl SceneGlobals {
     /// [`Error::OutOfMemory`].
     pub fn new(context: &Context, scene: Arc<Scene>, view: View) -> Result<SceneGlobals, Error> {
         let features = Features::of(&scene);
-        let still = Still::upload(context, &scene, &features)?;
+        Self::keeping(context, scene, view, &features)
+    }
+
+    /// As [`SceneGlobals::new`], with what shaders of these features ask for, be they facts of the scene or not.
+    ///
+    /// # Errors
+    /// As [`SceneGlobals::new`].
+    pub fn keeping(context: &Context, scene: Arc<Scene>, view: View, features: &Features) -> Result<SceneGlobals, Error> {
+        let still = Still::upload(context, &scene, features)?;
         let first = State::of(&scene, &still, &view, 0).map_err(refused)?;
-        let moving = Moving::new(context, &features, &first)?;
+        let moving = Moving::new(context, &scene, features, &first)?;
         Ok(SceneGlobals {
             batches: batches(&scene),
             scene,
@@ -79,11 +87,11 @@ impl SceneGlobals {
     ///
     /// # Errors
     /// [`Error::Globals`] for a scene that was not finished.
-    pub fn stack_depth(scene: &Scene) -> Result<u32, Error> {
+    pub fn stack_depth(scene: &Scene, features: &Features) -> Result<u32, Error> {
         let moment = scene.at(0.0, None).map_err(refused)?;
         let upper = aquifer_scene::Tlas::build(scene, &moment).bvh.depth;
         let lower = scene.meshes.iter().map(|mesh| mesh.bvh.depth).max().unwrap_or(0);
-        let slack = if Features::of(scene).moving_objects { 16 } else { 0 };
+        let slack = if features.moving_objects { 16 } else { 0 };
         // A multiple of 8, so that similar scenes share pipelines.
         Ok((upper + lower + slack).next_multiple_of(8))
     }
@@ -95,7 +103,17 @@ impl SceneGlobals {
 
     /// Bytes on the device.
     pub fn bytes(&self) -> u64 {
-        self.still.bytes() + self.moving.bytes()
+        self.arrays().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// Every array by qualified name, with its bytes on the device.
+    pub fn arrays(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.still.arrays().chain(self.moving.arrays())
+    }
+
+    /// Arrays that shaders of other features would have, each with the fact for want of which it is not there.
+    pub fn left_out(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        self.still.left_out.iter().chain(&self.moving.left_out).copied()
     }
 
     /// The scene.

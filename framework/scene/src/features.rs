@@ -22,6 +22,9 @@ macro_rules! features {
                 $(if self.$name { names.insert(stringify!($name)); })+
                 names
             }
+
+            /// Every fact holds: nothing may be left out.
+            pub const ALL: Features = Features { $($name: true,)+ };
         }
     };
 }

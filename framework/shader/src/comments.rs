@@ -47,6 +47,8 @@ fn enclosed<'a>(text: &'a str, open: &str, close: char) -> Option<(&'a str, &'a 
 pub struct Comments {
     /// The `//!` lines at the head, less `bias:` and `@tag` ones.
     pub manual: String,
+    /// Names of the line `//! @needs …`.
+    pub needs: Vec<String>,
     /// `//! bias:` lines.
     pub bias: Vec<BiasLine>,
     docs: HashMap<String, Doc>,
@@ -85,7 +87,9 @@ impl Comments {
     fn head(&mut self, line: &str) {
         match BiasLine::read(line) {
             Some(bias) => self.bias.push(bias),
-            None if line.starts_with('@') => {}
+            None if line.starts_with('@') => {
+                self.needs.extend(line.strip_prefix("@needs ").unwrap_or_default().split_whitespace().map(str::to_owned));
+            }
             None => {
                 self.manual.push_str(line);
                 self.manual.push('\n');

@@ -1,6 +1,6 @@
 //! One entry module, linked with what it imports: text, naga module, interface.
 
-use crate::{Interface, Library, ShaderError, locate, reflect, slots};
+use crate::{Cut, Interface, Library, ShaderError, cuts, locate, reflect, slots};
 use std::{
     borrow::Cow,
     cell::RefCell,
@@ -31,6 +31,8 @@ pub struct Composed {
     pub interface: Interface,
     /// The linked WGSL, for people; binding numbers are those of the sources.
     pub text: String,
+    /// What the facts of the scene left out.
+    pub cuts: Vec<Cut>,
 }
 
 impl Library {
@@ -50,7 +52,9 @@ impl Library {
             .validate(&module)
             .map_err(|error| locate::invalid(self, &text, &error))?;
         let interface = reflect::interface(self, what, &module, &info, &modules)?;
-        Ok(Composed { module, interface, text })
+        let texts = modules.iter().filter_map(|path| Some((path, self.text(path)?)));
+        let cuts = texts.flat_map(|(path, text)| cuts::of(path, text, &what.features)).collect();
+        Ok(Composed { module, interface, text, cuts })
     }
 
     /// The linked text and the paths of the modules that it came from.

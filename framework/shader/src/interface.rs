@@ -13,6 +13,8 @@ pub struct Interface {
     pub overrides: Vec<Override>,
     /// Slots reached, with the module path that fills each (`domain` → `domain/di`).
     pub slots: Vec<(String, String)>,
+    /// `//! @needs` of the entry file: facts of which a scene must have one for the shader to make anything.
+    pub needs: Vec<String>,
     /// `//! bias:` lines of every module reached, less those of slots filled otherwise.
     pub bias: Vec<BiasNote>,
 }
@@ -177,7 +179,7 @@ pub struct BiasNote {
     pub module: String,
     /// Why.
     pub why: String,
-    /// The fact that the scene would have to have; `None` where it has it, or where none is asked.
+    /// The fact of the scene that it takes.
     pub given: Option<String>,
     /// A slot and the filling that is without this bias.
     pub without: Option<(String, String)>,

@@ -12,6 +12,7 @@
 
 mod comments;
 mod compose;
+mod cuts;
 mod error;
 mod interface;
 mod library;
@@ -20,6 +21,7 @@ mod reflect;
 mod slots;
 
 pub use compose::{Composed, Specialisation};
+pub use cuts::{Cut, Piece};
 pub use error::ShaderError;
 pub use interface::*;
 pub use library::Library;

@@ -37,6 +37,7 @@ pub fn interface(
     let reader = Reader { what, module, layouter, comments };
     let (bindings, handles) = reader.bindings(info)?;
     Ok(Interface {
+        needs: reader.comments.get(what.entry.as_str()).map(|comments| comments.needs.clone()).unwrap_or_default(),
         manual: reader.comments.get(what.entry.as_str()).map(|comments| comments.manual.clone()).unwrap_or_default(),
         entries: reader.entries(info, &handles),
         bindings,
@@ -244,8 +245,7 @@ impl Reader<'_> {
         let lines = self.comments.iter().flat_map(|(path, comments)| comments.bias.iter().map(move |line| (path, line)));
         let of_slots = lines.filter(|(_, line)| self.slot_holds(line.condition.as_deref()));
         let note = |(path, line): (&&str, &BiasLine)| {
-            let fact = line.condition.clone().filter(|condition| !condition.contains('='));
-            let given = fact.filter(|fact| !self.what.features.contains(fact));
+            let given = line.condition.clone().filter(|condition| !condition.contains('='));
             BiasNote { module: (*path).to_owned(), why: line.why.clone(), given, without: line.without.clone() }
         };
         of_slots.map(note).collect()

@@ -55,7 +55,7 @@ fn ports_come_from_use_and_slots() {
     assert_eq!(di.slots, [("domain".to_owned(), "domain/di".to_owned())]);
 
     let gi = all().compose(&of("pass/initial", &[("domain", "gi")], &["bright"])).unwrap().interface;
-    assert_eq!(gi.bias, [note("it is a test", None), note("it dazzles", None), note("it is remembered", None)]);
+    assert_eq!(gi.bias, [note("it is a test", None), note("it dazzles", Some("bright")), note("it is remembered", None)]);
     let cells = gi.bindings.iter().find(|b| b.name == "cells").unwrap();
     assert_eq!((cells.module.as_str(), cells.tags[0].1.as_str(), cells.doc.as_str()), ("domain/gi", "fixed 64", "Cells of the grid."));
     assert!(gi.bindings.iter().any(|b| b.group == 0 && b.module == "scene/light" && b.name == "lights"));

@@ -5,7 +5,7 @@
 
 use aquifer_render::View;
 use aquifer_scene::Scene;
-use aquifer_tests::{Parts, context, scene};
+use aquifer_tests::{Kept, Parts, context, scene};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ fn unit(bits: u32) -> Vec3 {
 /// What both passes stored, over a few frames that each have a film sample of their own.
 fn both(scene: &Arc<Scene>, view: View, size: [u32; 2], frames: u32) -> Vec<[Seen; 2]> {
     let context = context().expect("the caller asked");
-    let mut renderer = Parts { keep: &KEEP, view, size, ..Parts::new(scene, GRAPH) }.renderer(&context);
+    let mut renderer = Parts { keep: &KEEP, view, size, kept: Kept::All, ..Parts::new(scene, GRAPH) }.renderer(&context);
     let mut pairs = Vec::new();
     for _ in 0..frames {
         renderer.frame().unwrap();

@@ -4,7 +4,7 @@
 //! triangles. One pass draws and stores the bin of each sample, another integrates the density over each bin.
 
 use aquifer_lab::stats::{chi_square::goodness_of_fit, multiple::sidak};
-use aquifer_tests::{Parts, context, scene};
+use aquifer_tests::{Kept, Parts, context, scene};
 
 const SIDE: usize = 48;
 
@@ -61,7 +61,8 @@ fn p_value(name: &str, sampler: &str, on: &str) -> Option<f64> {
     let graph = "transport = 'emission'\noutput = 'test_draw.bins'\n[slots]\nsampler = 'it'\n[pass.test_draw]\n[pass.test_integrate]";
     let sampler = format!("import package::sampler::chart::{{FOUR_PI, chart_of, direction_of, unit}};\n{sampler}");
     let shaders = [("pass/test_draw", DRAW), ("pass/test_integrate", INTEGRATE), ("sampler/it", &sampler), ("sampler/chart", CHART)];
-    let mut renderer = Parts { shaders: &shaders, keep: &["test_integrate.expected"], ..Parts::new(&scene, graph) }.renderer(&context);
+    let keep = ["test_integrate.expected"];
+    let mut renderer = Parts { shaders: &shaders, keep: &keep, kept: Kept::All, ..Parts::new(&scene, graph) }.renderer(&context);
     renderer.frame().unwrap();
     let bins = renderer.read_f32("test_draw.bins").unwrap();
     let mut observed = vec![0_u64; SIDE * SIDE + 1];

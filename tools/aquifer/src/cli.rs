@@ -2,8 +2,8 @@
 
 use crate::{
     command::{
-        adapters, bench, check, compare, completions, diff, dot, graphs, man, merge, passes, regress, render, report, scenes, schema,
-        stress,
+        adapters, bench, check, compare, completions, diff, dot, explain, graphs, man, merge, passes, regress, render, report, scenes,
+        schema, stress,
     },
     failure::Failure,
     ui::Ui,
@@ -46,6 +46,8 @@ pub enum Command {
     Compare(compare::Args),
     /// Check a graph, and say whether it is unbiased
     Check(check::Args),
+    /// Say what a graph leaves out on a scene, because of which fact, and what that saves
+    Explain(explain::Args),
     /// Draw a graph in Graphviz's language
     Dot(dot::Args),
     /// List the kinds of passes, or show one's manual page
@@ -85,6 +87,7 @@ impl Command {
             Self::Render(args) => render::run(args, ui),
             Self::Compare(args) => compare::run(args, ui),
             Self::Check(args) => check::run(args, ui),
+            Self::Explain(args) => explain::run(args, ui),
             Self::Dot(args) => dot::run(args, ui),
             Self::Passes(args) => passes::run(args, ui),
             Self::Graphs(args) => graphs::run(args, ui),

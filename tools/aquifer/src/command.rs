@@ -7,6 +7,7 @@ pub mod compare;
 pub mod completions;
 pub mod diff;
 pub mod dot;
+pub mod explain;
 pub mod graphs;
 pub mod man;
 pub mod merge;

@@ -2,7 +2,7 @@
 
 use crate::{faults, ui::Ui};
 use aquifer_graph::Faults;
-use aquifer_lab::{capture::CaptureError, compare::error::CompareError, stage::StageError};
+use aquifer_lab::{capture::CaptureError, compare::error::CompareError, explain::ExplainError, stage::StageError};
 use std::{error::Error, process::ExitCode};
 
 /// A command's failure.
@@ -74,6 +74,16 @@ impl From<CaptureError> for Failure {
     fn from(error: CaptureError) -> Self {
         match error {
             CaptureError::Render(error) => error.into(),
+            other => Self::Failed(other.into()),
+        }
+    }
+}
+
+impl From<ExplainError> for Failure {
+    fn from(error: ExplainError) -> Self {
+        match error {
+            ExplainError::Graph(faults) => faults.into(),
+            ExplainError::Render(error) => error.into(),
             other => Self::Failed(other.into()),
         }
     }

@@ -4,7 +4,7 @@ use crate::{failure::Failure, ui::Ui, value};
 use aquifer_graph::{Document, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
 use aquifer_lab::{bench::auto, stage};
 use aquifer_render::{Context, Registry};
-use aquifer_scene::{Environment, Scene};
+use aquifer_scene::{Environment, Features, Scene};
 use aquifer_scenes::Generator;
 use std::{
     path::{Path, PathBuf},
@@ -26,12 +26,15 @@ pub struct GraphArgs {
     pub shaders: ShaderArgs,
 }
 
-/// Shaders beside the built-in ones.
-#[derive(Clone, Debug, clap::Args)]
+/// Shaders beside the built-in ones, and how much of them.
+#[derive(Clone, Debug, Default, clap::Args)]
 pub struct ShaderArgs {
     /// A folder of .wgsl files that add to the built-in shaders or replace them; repeatable
     #[arg(long = "shaders", value_name = "DIR")]
     pub folders: Vec<PathBuf>,
+    /// Leave nothing out that the scene does not need (see `aquifer explain`)
+    #[arg(long)]
+    pub keep_all: bool,
 }
 
 /// A scene.
@@ -100,7 +103,15 @@ impl GraphArgs {
 impl ShaderArgs {
     /// Built-in shaders and passes with those of the folders over them, for a scene or for any.
     pub fn registry(&self, scene: Option<&Scene>) -> Result<Registry, Failure> {
-        Ok(stage::registry(scene, &self.folders)?)
+        Ok(match scene {
+            Some(scene) => stage::registry_keeping(scene, &self.features(scene), &self.folders)?,
+            None => stage::registry(None, &self.folders)?,
+        })
+    }
+
+    /// What shaders for this scene are cut to.
+    pub fn features(&self, scene: &Scene) -> Features {
+        if self.keep_all { Features::ALL } else { Features::of(scene) }
     }
 }
 

@@ -2,6 +2,8 @@
 
 #[path = "cli/compare.rs"]
 mod compare;
+#[path = "cli/explain.rs"]
+mod explain;
 #[path = "cli/graphs.rs"]
 mod graphs;
 #[path = "cli/images.rs"]

@@ -1,7 +1,7 @@
 //! Shaders and kinds of passes, with a user's folders over the built-in ones.
 
 use aquifer_render::Registry;
-use aquifer_scene::Scene;
+use aquifer_scene::{Features, Scene};
 use aquifer_shader::{Library, ShaderError};
 use std::path::PathBuf;
 
@@ -28,6 +28,11 @@ pub fn library(folders: &[PathBuf]) -> Result<Library, ShaderError> {
 /// [`library`] and the built-in passes; see [`aquifer_passes::registry`].
 pub fn registry(scene: Option<&Scene>, folders: &[PathBuf]) -> Result<Registry, StageError> {
     Ok(aquifer_passes::registry(library(folders)?, scene)?)
+}
+
+/// As [`registry`], for shaders cut to `features`; see [`aquifer_passes::registry_keeping`].
+pub fn registry_keeping(scene: &Scene, features: &Features, folders: &[PathBuf]) -> Result<Registry, StageError> {
+    Ok(aquifer_passes::registry_keeping(library(folders)?, scene, features)?)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Passes that a scene does not need, and the wires round the gaps that they leave.
+//! Passes and ports that a scene does not need, and the wires round the gaps that they leave.
 
 use super::PlanError;
 use crate::{Direction, LeftOut, Needs, Node, PortId, StandIn, Verdict, When, Wire, flow::Flow};
@@ -15,15 +15,16 @@ pub(super) struct Left {
     too_far_back: Option<String>,
 }
 
-/// Takes out every node that need not run, one after the other.
+/// Takes out every port that is not there and every node that need not run, one after the other.
 pub(super) fn leave_out(nodes: Vec<Node>, goals: &[PortId], needs: &dyn Needs) -> Result<Left, PlanError> {
     let goals = goals.iter().map(|&from| Some(Wire { from, when: When::This })).collect();
     let runs = vec![true; nodes.len()];
     let mut left = Left { nodes, runs, goals, left_out: Vec::new(), too_far_back: None };
     for node in 0..left.nodes.len() {
+        left.take_out_ports(node)?;
         if let Verdict::LeaveOut { reason, stand_in } = needs.verdict(&left.nodes[node]) {
             left.take_out(node, &stand_in)?;
-            left.left_out.push(LeftOut { node: left.nodes[node].name.clone(), reason });
+            left.left_out.push(LeftOut { node: left.nodes[node].name.clone(), port: None, reason });
         }
     }
     Ok(left)
@@ -34,24 +35,42 @@ impl Left {
         self.runs[node] = false;
         let ports = 0..self.nodes[node].contract.ports.len();
         let stands_in: Vec<Option<Wire>> = ports.map(|port| self.stand_in(node, port, stand_in)).collect::<Result<_, _>>()?;
+        stands_in.into_iter().enumerate().for_each(|(port, wire)| self.bypass(PortId { node, port }, wire));
+        Ok(())
+    }
+
+    /// The ports that a pass does without in this scene: what it would write is zeros, and what it would read is not asked for.
+    fn take_out_ports(&mut self, node: usize) -> Result<(), PlanError> {
+        let absent = self.nodes[node].contract.absent.clone();
+        for (name, reason) in absent {
+            let Some(port) = self.nodes[node].port_index(&name) else { continue };
+            let wire = self.stand_in(node, port, &BTreeMap::new())?;
+            self.bypass(PortId { node, port }, wire);
+            self.nodes[node].wires[port] = None;
+            self.left_out.push(LeftOut { node: self.nodes[node].name.clone(), port: Some(name), reason });
+        }
+        Ok(())
+    }
+
+    /// Readers of a port that is gone get what stands in for it.
+    fn bypass(&mut self, gone: PortId, stands_in: Option<Wire>) {
         let mut too_far = None;
         for (index, reader) in self.nodes.iter_mut().enumerate() {
             for port in 0..reader.wires.len() {
-                if let Some(wire) = reader.wires[port].filter(|wire| wire.from.node == node) {
-                    reader.wires[port] = follow(wire, stands_in[wire.from.port]).unwrap_or_else(|| {
+                if let Some(wire) = reader.wires[port].filter(|wire| wire.from == gone) {
+                    reader.wires[port] = follow(wire, stands_in).unwrap_or_else(|| {
                         too_far.get_or_insert(PortId { node: index, port });
                         None
                     });
                 }
             }
         }
-        for wire in self.goals.iter_mut().filter(|goal| goal.is_some_and(|wire| wire.from.node == node)) {
-            *wire = wire.and_then(|wire| follow(wire, stands_in[wire.from.port]).flatten());
+        for wire in self.goals.iter_mut().filter(|goal| goal.is_some_and(|wire| wire.from == gone)) {
+            *wire = wire.and_then(|wire| follow(wire, stands_in).flatten());
         }
         if let Some(port) = too_far {
             self.too_far_back.get_or_insert(format!("`{}` would have to read two frames back", crate::graph::port_name(&self.nodes, port)));
         }
-        Ok(())
     }
 
     /// What the readers of a port get instead.
@@ -82,7 +101,8 @@ impl Left {
         match self.too_far_back.clone().or_else(hazard).or_else(goal) {
             None => Ok(()),
             Some(conflict) => {
-                let nodes = self.left_out.iter().map(|left| format!("`{}` ({})", left.node, left.reason)).collect();
+                let name = |left: &LeftOut| left.port.iter().fold(left.node.clone(), |node, port| format!("{node}.{port}"));
+                let nodes = self.left_out.iter().map(|left| format!("`{}` ({})", name(left), left.reason)).collect();
                 Err(PlanError::Clash { nodes, conflict })
             }
         }

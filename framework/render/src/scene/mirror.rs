@@ -30,7 +30,7 @@ twins! {
     }
     /// Uniform of every pass.
     "frame/frame" Frame {
-        extent: [u32; 2], index: u32, history_valid: u32, seed: [u32; 2], lights: u32, padding: u32, camera: Camera, camera_prev: Camera,
+        extent: [u32; 2], index: u32, history_valid: u32, seed: [u32; 2], lights: u32, moving: u32, camera: Camera, camera_prev: Camera,
     }
     /// Corners and packed normals.
     "scene/geometry" Triangle { a: [f32; 3], na: u32, b: [f32; 3], nb: u32, c: [f32; 3], nc: u32, }

@@ -25,8 +25,12 @@ pub struct State {
 
 struct Array {
     now: &'static str,
+    /// The fact that shaders have it with; empty where they always do.
+    fact: &'static str,
     /// Empty where shaders never ask for last frame's.
     before: &'static str,
+    /// The fact that shaders have last frame's with.
+    before_fact: &'static str,
     /// A table, not a buffer.
     table: bool,
     bytes: Vec<u8>,
@@ -42,24 +46,30 @@ impl State {
         let arrays = [
             Array {
                 now: "scene/geometry::instances",
+                fact: "",
                 before: "scene/geometry::instances_prev",
+                before_fact: "moving_objects",
                 table: true,
                 bytes: bytes(&instances(&moment, &list, still)),
             },
             Array {
                 now: "scene/hierarchy::tlas",
+                fact: "",
                 before: "scene/hierarchy::tlas_prev",
+                before_fact: "moving_objects",
                 table: true,
                 bytes: bytes(&nodes::upper(&tlas.bvh)),
             },
             Array {
                 now: "scene/punctual::punctuals",
+                fact: "punctual_lights",
                 before: "scene/punctual::punctuals_prev",
+                before_fact: "moving_lights",
                 table: false,
                 bytes: bytes(&punctuals(scene, &moment)),
             },
-            Array { now: "lights/scene::lights", before: "", table: false, bytes: bytes(&lights) },
-            Array { now: "scene/bounds::bounds", before: "", table: false, bytes: bytes(&[bounds(&tlas)]) },
+            Array { now: "lights/scene::lights", fact: "", before: "", before_fact: "", table: false, bytes: bytes(&lights) },
+            Array { now: "scene/bounds::bounds", fact: "", before: "", before_fact: "", table: false, bytes: bytes(&[bounds(&tlas)]) },
         ];
         let drawable = if list.table.is_empty() { 0 } else { list.lights.len() as u32 };
         Ok(State { time, view: view.clone(), camera: moment.camera, arrays, lights: drawable, depth: tlas.bvh.depth })
@@ -111,7 +121,13 @@ fn bounds(tlas: &Tlas) -> mirror::Bounds {
 /// The arrays on the device.
 pub struct Moving {
     stores: BTreeMap<&'static str, Store>,
+    /// Names of arrays, with the fact that the scene lacks.
+    pub left_out: Vec<(&'static str, &'static str)>,
     frame: Store,
+    /// Of the scene: lights or objects move.
+    moves: bool,
+    /// Shaders know of a camera that moves.
+    camera_moves: bool,
     /// Deepest upper hierarchy that the traversal stack was sized for.
     depth: u32,
     /// Camera of the frame before.
@@ -121,31 +137,38 @@ pub struct Moving {
 const FRAME: &str = "frame/frame::frame";
 
 impl Moving {
-    pub fn new(context: &Context, features: &Features, first: &State) -> Result<Moving, Error> {
-        let mut stores = BTreeMap::new();
-        for Array { now, before, table, bytes } in &first.arrays {
+    pub fn new(context: &Context, scene: &Scene, features: &Features, first: &State) -> Result<Moving, Error> {
+        let names = features.names();
+        let (mut stores, mut left_out) = (BTreeMap::new(), Vec::new());
+        for Array { now, fact, before, before_fact, table, bytes } in &first.arrays {
             let mut contents = bytes.clone();
             contents.resize(contents.len().max(room(now, first)), 0);
             let make = |name| match table {
                 true => Store::table(context, name, &contents),
                 false => Store::buffer(context, name, &contents, wgpu::BufferUsages::STORAGE),
             };
-            stores.insert(*now, make(now)?);
-            if !before.is_empty() && (features.moving_objects || features.moving_lights) {
-                stores.insert(*before, make(before)?);
+            for (name, fact) in [(now, fact), (before, before_fact)].into_iter().filter(|(name, _)| !name.is_empty()) {
+                if fact.is_empty() || names.contains(fact) {
+                    stores.insert(*name, make(name)?);
+                } else {
+                    left_out.push((*name, *fact));
+                }
             }
         }
         let frame = Store::buffer(context, FRAME, &[mirror::Frame::default()], wgpu::BufferUsages::UNIFORM)?;
         let slack = if features.moving_objects { 16 } else { 0 };
-        Ok(Moving { stores, frame, depth: first.depth + slack, camera: None })
+        let facts = Features::of(scene);
+        let moves = facts.moving_objects || facts.moving_lights;
+        let camera_moves = features.moving_camera;
+        Ok(Moving { stores, left_out, frame, moves, camera_moves, depth: first.depth + slack, camera: None })
     }
 
     pub fn store(&self, name: &str) -> Option<&Store> {
         if name == FRAME { Some(&self.frame) } else { self.stores.get(name) }
     }
 
-    pub fn bytes(&self) -> u64 {
-        self.stores.values().map(Store::bytes).sum::<u64>() + self.frame.bytes()
+    pub fn arrays(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.stores.iter().map(|(name, store)| (*name, store.bytes())).chain([(FRAME, self.frame.bytes())])
     }
 
     pub fn write_now(&self, context: &Context, state: &State) -> Result<(), Error> {
@@ -174,14 +197,19 @@ impl Moving {
     pub fn write_frame(&mut self, context: &Context, info: &FrameInfo, state: &State, centred: bool) {
         let jitter = if centred { [0.5; 2] } else { jitter(info.seed, info.index) };
         let camera = mirror::Camera::new(&state.camera, jitter);
-        let before = self.camera.replace(camera).filter(|_| info.history_valid).unwrap_or(camera);
+        let still = mirror::Camera { jitter_x: 0.0, jitter_y: 0.0, ..camera };
+        let last = self.camera.replace(camera);
+        // Without motion vectors, another camera is another film.
+        let follows = |last: &mirror::Camera| self.camera_moves || mirror::Camera { jitter_x: 0.0, jitter_y: 0.0, ..*last } == still;
+        let history_valid = info.history_valid && last.as_ref().is_none_or(follows);
+        let before = last.filter(|_| history_valid).unwrap_or(camera);
         let frame = mirror::Frame {
             extent: info.size,
             index: info.index,
-            history_valid: u32::from(info.history_valid),
+            history_valid: u32::from(history_valid),
             seed: [info.seed as u32, (info.seed >> 32) as u32],
             lights: state.lights,
-            padding: 0,
+            moving: self.moves.into(),
             camera,
             camera_prev: before,
         };

@@ -6,12 +6,15 @@ use super::{
     store::Store,
 };
 use crate::{Context, Error};
-use aquifer_scene::{Emitters, EnvironmentDistribution, Features, Mesh, Scene, TextureRef};
+use aquifer_scene::{Emitters, Environment, EnvironmentDistribution, Features, Mesh, Scene, TextureRef};
+use glam::Mat3;
 use std::collections::BTreeMap;
 
 /// Arrays by qualified name, and what moving data is made from.
 pub struct Still {
     stores: BTreeMap<&'static str, Store>,
+    /// Names of arrays, with the fact that the scene lacks.
+    pub left_out: Vec<(&'static str, &'static str)>,
     /// One a mesh.
     pub places: Vec<Place>,
     pub emitters: Emitters,
@@ -29,12 +32,10 @@ impl Still {
     pub fn upload(context: &Context, scene: &Scene, features: &Features) -> Result<Still, Error> {
         let emitters = Emitters::find(scene);
         let environment = scene.environment.as_ref().map(EnvironmentDistribution::new);
-        let mut still = Still { stores: BTreeMap::new(), places: places(scene), emitters, environment };
+        let mut still = Still { stores: BTreeMap::new(), left_out: Vec::new(), places: places(scene), emitters, environment };
         still.add_geometry(context, scene, features)?;
-        still.add_materials(context, scene)?;
-        if let Some(environment) = &scene.environment {
-            still.add_environment(context, environment)?;
-        }
+        still.add_materials(context, scene, features)?;
+        still.add_environment(context, scene, features)?;
         Ok(still)
     }
 
@@ -42,8 +43,24 @@ impl Still {
         self.stores.get(name)
     }
 
-    pub fn bytes(&self) -> u64 {
-        self.stores.values().map(Store::bytes).sum()
+    pub fn arrays(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        self.stores.iter().map(|(name, store)| (*name, store.bytes()))
+    }
+
+    /// Adds an array that shaders have only with `fact`.
+    fn add_with<T: bytemuck::Pod>(
+        &mut self,
+        context: &Context,
+        features: &Features,
+        fact: &'static str,
+        name: &'static str,
+        records: impl FnOnce() -> Vec<T>,
+    ) -> Result<(), Error> {
+        if features.names().contains(fact) {
+            return self.add(context, name, &records());
+        }
+        self.left_out.push((name, fact));
+        Ok(())
     }
 
     fn add<T: bytemuck::Pod>(&mut self, context: &Context, name: &'static str, records: &[T]) -> Result<(), Error> {
@@ -77,19 +94,12 @@ impl Still {
             })
             .collect();
         self.add(context, "scene/geometry::triangle_infos", &infos)?;
-        if features.textures {
-            self.add(context, "scene/material::triangle_uvs", &per_triangle(scene, uvs))?;
-        }
-        if features.normal_maps {
-            self.add(context, "surface::triangle_tangents", &per_triangle(scene, tangents))?;
-        }
-        if features.vertex_colors {
-            self.add(context, "scene/material::triangle_colors", &per_triangle(scene, colors))?;
-        }
-        Ok(())
+        self.add_with(context, features, "textures", "scene/material::triangle_uvs", || per_triangle(scene, uvs))?;
+        self.add_with(context, features, "normal_maps", "surface::triangle_tangents", || per_triangle(scene, tangents))?;
+        self.add_with(context, features, "vertex_colors", "scene/material::triangle_colors", || per_triangle(scene, colors))
     }
 
-    fn add_materials(&mut self, context: &Context, scene: &Scene) -> Result<(), Error> {
+    fn add_materials(&mut self, context: &Context, scene: &Scene, features: &Features) -> Result<(), Error> {
         let mut uses: Vec<TextureRef> = Vec::new();
         let mut index = |used: &Option<TextureRef>| {
             let Some(used) = used else { return NONE };
@@ -113,11 +123,18 @@ impl Still {
             .collect();
         let textures: Vec<_> =
             uses.iter().map(|used| mirror::Texture::new(used, &scene.images[used.image as usize], firsts[used.image as usize])).collect();
-        self.add(context, "scene/texture::textures", &textures)?;
-        self.add(context, "scene/texture::texels", &texels)
+        self.add_with(context, features, "textures", "scene/texture::textures", || textures)?;
+        self.add_with(context, features, "textures", "scene/texture::texels", || texels)
     }
 
-    fn add_environment(&mut self, context: &Context, environment: &aquifer_scene::Environment) -> Result<(), Error> {
+    /// Of a scene without one, where shaders ask for it all the same, a black one.
+    fn add_environment(&mut self, context: &Context, scene: &Scene, features: &Features) -> Result<(), Error> {
+        if !features.environment {
+            self.left_out.extend(ENVIRONMENT.map(|name| (name, "environment")));
+            return Ok(());
+        }
+        let black = Environment { name: String::new(), width: 1, height: 1, radiance: vec![[0.0; 3]], world_to_map: Mat3::IDENTITY };
+        let environment = scene.environment.as_ref().unwrap_or(&black);
         let m = environment.world_to_map;
         let row = |i: usize| [m.x_axis[i], m.y_axis[i], m.z_axis[i]];
         let info = mirror::EnvironmentInfo {
@@ -128,14 +145,19 @@ impl Still {
             to_map_z: row(2),
             padding: 0,
         };
-        let buffer = Store::buffer(context, "environment_info", &[info], wgpu::BufferUsages::UNIFORM)?;
-        self.stores.insert("scene/environment::environment_info", buffer);
+        let [info_name, texels_name, cdf_name] = ENVIRONMENT;
+        let buffer = Store::buffer(context, info_name, &[info], wgpu::BufferUsages::UNIFORM)?;
+        self.stores.insert(info_name, buffer);
         let texels: Vec<[f32; 4]> = environment.radiance.iter().map(|&[r, g, b]| [r, g, b, 0.0]).collect();
-        self.add(context, "scene/environment::environment_texels", &texels)?;
+        self.add(context, texels_name, &texels)?;
         let pmf: Vec<f64> = self.environment.iter().flat_map(|d| d.table.entries.iter().map(|entry| f64::from(entry.pmf))).collect();
-        self.add(context, "scene/environment::environment_cdf", &cumulative(&pmf, environment.width as usize, environment.height as usize))
+        self.add(context, cdf_name, &cumulative(&pmf, environment.width as usize, environment.height as usize))
     }
 }
+
+/// What stands for the environment.
+const ENVIRONMENT: [&str; 3] =
+    ["scene/environment::environment_info", "scene/environment::environment_texels", "scene/environment::environment_cdf"];
 
 /// Instances are made from the nodes in their order, at every moment.
 pub fn meshes_of_instances(scene: &Scene) -> impl Iterator<Item = usize> {

@@ -1,7 +1,7 @@
 //! `aquifer check GRAPH`
 
 use crate::{failure::Failure, source::GraphArgs, ui::Ui};
-use aquifer_graph::{BiasFinding, Graph, NeedsAll, Plan};
+use aquifer_graph::{BiasFinding, Graph, Plan};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -13,8 +13,8 @@ pub struct Args {
 }
 
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
-    let (graph, _) = args.graph.check(None)?;
-    let plan = graph.plan(&NeedsAll, &[])?;
+    let (graph, registry) = args.graph.check(None)?;
+    let plan = graph.plan(&registry, &[])?;
     if args.json { ui.json(&graph.to_json()) } else { ui.print(&report(&graph, &plan)) }
 }
 

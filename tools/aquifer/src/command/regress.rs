@@ -1,4 +1,6 @@
-//! `aquifer regress [GRAPH …]`
+//! `aquifer regress [GRAPH[@SCENE] …]`
+
+mod folder;
 
 use crate::{
     failure::Failure,
@@ -8,29 +10,31 @@ use crate::{
 };
 use aquifer_graph::Transport;
 use aquifer_lab::{
-    atomic,
     compare::subject::Stage,
-    film::Film,
-    regress::{compare, difference, picture},
+    regress::{Picture, Shown, Verdict, compare, picture, write},
 };
 use aquifer_render::{Context, ContextOptions};
+use folder::{Folder, stem};
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
 };
 
+/// Seconds from one frame to the next where things move.
+const STEP: f32 = 0.05;
+
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Graphs: built-in ones or .toml files; without any, those whose pictures are in the folder
-    #[arg(value_name = "GRAPH")]
+    /// Graphs, built-in ones or .toml files, each with the scene that follows its `@`; without any, those whose pictures are in the folder
+    #[arg(value_name = "GRAPH[@SCENE]")]
     graphs: Vec<String>,
-    /// Folder of the pictures that are wanted, one a graph
+    /// Folder of the pictures that are wanted
     #[arg(long, value_name = "DIR", default_value = "tests/golden")]
     golden: PathBuf,
-    /// Keep today's pictures as those that are wanted
+    /// Show the differences, then keep today's pictures as those that are wanted
     #[arg(long)]
     bless: bool,
-    /// The scene, by name or file
+    /// The scene of graphs that name none
     #[arg(long, value_name = "SCENE", default_value = "cornell")]
     scene: String,
     /// Which light paths
@@ -44,94 +48,107 @@ pub struct Args {
     /// The graphics adapter whose name contains this (see `aquifer adapters`)
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Where got, want and their difference go when they differ
+    /// Where got, want, their difference and a page of them go when they differ
     #[arg(short, long, value_name = "DIR", default_value = "out/regress")]
     output: PathBuf,
 }
 
-pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
-    let graphs = if args.graphs.is_empty() { kept(&args.golden)? } else { args.graphs.clone() };
-    let stage = args.stage(ui)?;
-    let mut changed = Vec::new();
-    for graph in &graphs {
-        if !args.check(graph, &stage, ui)? {
-            changed.push(graph.as_str());
-        }
+/// One picture, today's and the one kept.
+struct Case {
+    name: String,
+    got: Picture,
+    want: Option<(aquifer_lab::film::Film, Verdict)>,
+}
+
+impl Case {
+    fn changed(&self) -> bool {
+        self.want.as_ref().is_some_and(|(_, verdict)| !verdict.passed())
     }
+}
+
+pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
+    let mut folder = Folder::open(&args.golden)?;
+    let names = if args.graphs.is_empty() { folder.names()? } else { args.graphs.clone() };
+    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let mut cases = Vec::new();
+    for name in &names {
+        let case = args.case(name, &context, &folder, ui)?;
+        ui.print(&told(&case))?;
+        cases.push(case);
+    }
+    args.write(&cases, ui)?;
+    if args.bless {
+        return args.keep(&cases, &context, &mut folder, ui);
+    }
+    let changed: Vec<&str> = cases.iter().filter(|case| case.changed()).map(|case| case.name.as_str()).collect();
     match changed.as_slice() {
         [] => Ok(()),
         _ => Err(Failure::new(format!(
             "{} of {} pictures changed: {}; if that is meant, --bless keeps the new ones",
             changed.len(),
-            graphs.len(),
+            cases.len(),
             changed.join(", ")
         ))),
     }
 }
 
-/// Graphs that have a picture.
-fn kept(folder: &Path) -> Result<Vec<String>, Failure> {
-    let unreadable = |error: std::io::Error| Failure::new(format!("cannot read `{}`: {error}", folder.display()));
-    let mut names = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
-        let path = entry.map_err(unreadable)?.path();
-        if path.extension().is_some_and(|end| end == "exr") {
-            names.push(stem(&path));
-        }
+fn told(case: &Case) -> String {
+    match &case.want {
+        Some((_, verdict)) => format!("{}: {verdict}", case.name),
+        None => format!("{}: no picture is kept", case.name),
     }
-    names.sort();
-    if names.is_empty() {
-        Err(Failure::new(format!("`{}` holds no pictures: name graphs and --bless", folder.display())))
-    } else {
-        Ok(names)
-    }
-}
-
-fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 impl Args {
-    fn stage(&self, ui: &Ui) -> Result<Stage, Failure> {
-        let context = Context::new(&ContextOptions { adapter: self.adapter.clone(), ..ContextOptions::default() })?;
-        let scene = Arc::new(SceneArgs { scene: self.scene.clone(), environment: None }.load(ui)?);
+    fn stage(&self, context: &Context, scene: &str, ui: &Ui) -> Result<Stage, Failure> {
+        let scene = Arc::new(SceneArgs { scene: scene.to_owned(), environment: None }.load(ui)?);
         let registry = self.shaders.registry(Some(&scene))?;
-        Ok(Stage { context, registry, scene, camera: None, time: 0.0, step: 0.0, size: self.size, centred: false })
+        let context = context.clone();
+        Ok(Stage { context, registry, scene, camera: None, time: 0.0, step: STEP, size: self.size, centred: false })
     }
 
-    /// Is the picture still the one that is wanted?
-    fn check(&self, graph: &str, stage: &Stage, ui: &Ui) -> Result<bool, Failure> {
-        let shaders = ShaderArgs { folders: Vec::new() };
+    fn case(&self, name: &str, context: &Context, folder: &Folder, ui: &Ui) -> Result<Case, Failure> {
+        let (graph, scene) = name.split_once('@').unwrap_or((name, &self.scene));
+        let stage = self.stage(context, scene, ui)?;
+        let shaders = ShaderArgs::default();
         let source = GraphArgs { graph: graph.to_owned(), settings: Vec::new(), transport: self.transport, shaders };
-        let got = picture(stage, &source.document()?, &self.scene)?;
-        let name = stem(Path::new(graph));
-        let golden = self.golden.join(format!("{name}.exr"));
-        if self.bless {
-            std::fs::create_dir_all(&self.golden)
-                .map_err(|error| Failure::new(format!("cannot make `{}`: {error}", self.golden.display())))?;
-            got.write(&golden)?;
-            ui.note(&format!("kept {}", golden.display()));
-            return Ok(true);
-        }
-        let want = Film::read(&golden)?;
-        let found = compare(&got, &want).map_err(|error| Failure::Failed(error.into()))?;
-        if found.passed {
-            ui.print(&format!("{name}: unchanged ({} of {} pixels fail)", found.failed, found.p.len()))?;
-        } else {
-            ui.print(&format!("{name}: changed, {} of {} pixels", found.failed, found.p.len()))?;
-            self.write(&name, &got, &want, ui)?;
-        }
-        Ok(found.passed)
+        let got = picture(&stage, &source.document()?, scene)?;
+        let name = match name.split_once('@') {
+            Some((_, scene)) => format!("{}@{scene}", stem(Path::new(graph))),
+            None => stem(Path::new(graph)),
+        };
+        let want = match folder.picture(&name, self.bless)? {
+            None => None,
+            Some((want, kept)) => {
+                let bits = folder.store.bits(&context.adapter().name, &name);
+                let verdict = compare(&got, &want, &kept, bits).map_err(|error| Failure::Failed(error.into()))?;
+                Some((want, verdict))
+            }
+        };
+        Ok(Case { name, got, want })
     }
 
-    fn write(&self, name: &str, got: &Film, want: &Film, ui: &Ui) -> Result<(), Failure> {
-        std::fs::create_dir_all(&self.output).map_err(|error| Failure::new(format!("cannot make `{}`: {error}", self.output.display())))?;
-        let path = |what: &str| self.output.join(format!("{name}.{what}.exr"));
-        atomic::check_writable(&path("got"))?;
-        got.write(&path("got"))?;
-        want.write(&path("want"))?;
-        difference(got, want).write(&path("difference"))?;
-        ui.note(&format!("wrote {name}.got.exr, .want.exr and .difference.exr to {}", self.output.display()));
+    /// What differs, for people to look at.
+    fn write(&self, cases: &[Case], ui: &Ui) -> Result<(), Failure> {
+        let shown = cases.iter().filter(|case| case.changed()).filter_map(|Case { name, got, want }| {
+            let (want, verdict) = want.as_ref()?;
+            Some(Shown { name, got, want, verdict })
+        });
+        let shown: Vec<Shown<'_>> = shown.collect();
+        if shown.is_empty() {
+            return Ok(());
+        }
+        folder::write_images(&shown, &self.output)?;
+        write(&shown, &self.output).map_err(|error| Failure::Failed(error.into()))?;
+        ui.note(&format!("wrote changed.html and {} pictures to {}", 3 * shown.len(), self.output.display()));
         Ok(())
+    }
+
+    fn keep(&self, cases: &[Case], context: &Context, folder: &mut Folder, ui: &Ui) -> Result<(), Failure> {
+        for Case { name, got, .. } in cases {
+            folder.keep(&context.adapter().name, name, got)?;
+            ui.note(&format!("kept {name}"));
+        }
+        folder.write()
     }
 }

@@ -105,7 +105,7 @@ fn long(graphs: &[(String, Document)], frames: u32, context: &Context, json: boo
 }
 
 fn document(name: &str) -> Result<Document, Failure> {
-    let shaders = ShaderArgs { folders: Vec::new() };
+    let shaders = ShaderArgs::default();
     GraphArgs { graph: name.to_owned(), settings: Vec::new(), transport: None, shaders }.document()
 }
 
@@ -170,7 +170,7 @@ impl Args {
 
 /// Its picture holds scattered light.
 fn shows_light(name: &str) -> Result<bool, Failure> {
-    let shaders = ShaderArgs { folders: Vec::new() };
+    let shaders = ShaderArgs::default();
     let graph = GraphArgs { graph: name.to_owned(), settings: Vec::new(), transport: None, shaders };
     Ok(graph.check(None)?.0.transport() != Transport::Emission)
 }

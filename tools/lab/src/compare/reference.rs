@@ -10,7 +10,7 @@ use crate::{
     capture::Capture,
     film::{Facts, Film, GraphText, Runs, merge},
 };
-use aquifer_graph::{Document, Graph, NeedsAll, Plan, Source, Transport};
+use aquifer_graph::{Document, Graph, Plan, Source, Transport};
 use aquifer_render::{Renderer, RendererOptions, SceneGlobals, View};
 use serde::{Deserialize, Serialize};
 use std::{
@@ -75,7 +75,7 @@ impl Tracer {
         document.apply(edits.map(|text| Source::new("reference", text)))?;
         let graph = stage.graph(&document, None)?;
         let capture = Capture::of(&graph);
-        let plan = graph.plan(&NeedsAll, &capture.keep())?;
+        let plan = graph.plan(&stage.registry, &capture.keep())?;
         let view = View { camera: stage.camera.clone(), time, step: 0.0, centred: stage.centred };
         let globals = SceneGlobals::new(&stage.context, stage.scene.clone(), view)?;
         let options = RendererOptions { size: stage.size, ..RendererOptions::default() };

@@ -171,7 +171,7 @@ fn state_name(stage: &Stage, entrants: &[Entrant], facts: &SceneFacts, request: 
     );
     for entrant in entrants {
         let graph = stage.graph(&entrant.document, None)?;
-        let plan = graph.plan(&aquifer_graph::NeedsAll, &[])?;
+        let plan = graph.plan(&stage.registry, &[])?;
         text += &format!("\n{} {}", graph.digest(), shaders(stage, &plan));
     }
     Ok(format!("{}-{}", facts.name, &blake3::hash(text.as_bytes()).to_hex()[..12]))

@@ -2,7 +2,7 @@
 
 use super::error::CompareError;
 use crate::{capture::Capture, film::Film};
-use aquifer_graph::{Document, Graph, NeedsAll, PortId, Source, Value};
+use aquifer_graph::{Document, Graph, PortId, Source, Value};
 use aquifer_render::{Clock, Context, Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::Scene;
 use std::{collections::BTreeSet, sync::Arc, time::Instant};
@@ -82,7 +82,7 @@ impl Stage {
         let graph = self.graph(document, knob)?;
         let capture = Capture::of(&graph);
         let frame = graph.port_name(capture.frame_port(&graph));
-        let plan = graph.plan(&NeedsAll, &[&frame])?;
+        let plan = graph.plan(&self.registry, &[&frame])?;
         let needed = upstream(&graph, capture.frame_port(&graph));
         let counted = plan.steps.iter().map(|step| needed.contains(&step.node)).collect();
         let view = if capture.independent() { self.view(0.0, 0) } else { self.view(self.step, warm_up) };

@@ -15,7 +15,7 @@ pub fn entrants(typed: &[String], settings: &[String], transport: Option<Transpo
         let own = own.collect::<Result<Vec<String>, Failure>>()?;
         let name = unique(short(&graph, &own), &entrants);
         let settings: Vec<String> = settings.iter().cloned().chain(own).collect();
-        let args = GraphArgs { graph, settings: settings.clone(), transport, shaders: ShaderArgs { folders: Vec::new() } };
+        let args = GraphArgs { graph, settings: settings.clone(), transport, shaders: ShaderArgs::default() };
         entrants.push(Entrant { name, document: args.document()?, settings });
     }
     Ok(entrants)

@@ -9,14 +9,14 @@ use crate::{
     source::{GraphArgs, text_of},
     ui::Ui,
 };
-use aquifer_graph::{Graph, NeedsAll, Plan, Source};
+use aquifer_graph::{Graph, Plan, Source};
 use aquifer_lab::{
     capture::Capture,
     film::{Facts, Film, Format, GraphText, Runs},
     first_surface::FirstSurface,
     rays::RayCounters,
 };
-use aquifer_render::{Context, ContextOptions, Renderer, RendererOptions, SceneGlobals, View};
+use aquifer_render::{Context, ContextOptions, Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::Scene;
 use std::{
     path::PathBuf,
@@ -59,9 +59,9 @@ impl<'a> Job<'a> {
         if !edits.is_empty() || source.settings != args.graph.settings {
             (graph, registry) = source.check_with(Some(&scene), edits)?;
         }
-        let (taken, plan) = planned(&graph)?;
+        let (taken, plan) = planned(&graph, &registry)?;
         let view = View { camera: args.camera.clone(), ..view };
-        let globals = SceneGlobals::new(&context, scene.clone(), view.clone())?;
+        let globals = SceneGlobals::keeping(&context, scene.clone(), view.clone(), &args.graph.shaders.features(&scene))?;
         let options =
             RendererOptions { size: args.size, seed: args.seed, first_frame, counters: args.counters, ..RendererOptions::default() };
         let renderer = Renderer::new(&context, &registry, plan, Box::new(globals), options)?;
@@ -71,7 +71,7 @@ impl<'a> Job<'a> {
     /// Reads graph and shaders anew. When something is wrong with them, everything stays as it was.
     pub fn reload(&mut self) -> Result<(), Failure> {
         let (graph, registry) = self.source.check(Some(&self.scene))?;
-        let (taken, plan) = planned(&graph)?;
+        let (taken, plan) = planned(&graph, &registry)?;
         self.renderer.replace_plan(&registry, plan)?;
         (self.graph, self.taken) = (graph, taken);
         Ok(())
@@ -162,9 +162,9 @@ impl<'a> Job<'a> {
 }
 
 /// What is taken off a graph, and the plan that keeps it.
-fn planned(graph: &Graph) -> Result<(Taken, Plan), Failure> {
+fn planned(graph: &Graph, registry: &Registry) -> Result<(Taken, Plan), Failure> {
     let taken = Taken { capture: Capture::of(graph), surface: FirstSurface::of(graph), rays: RayCounters::of(graph) };
     let keep: Vec<&str> = taken.capture.keep().into_iter().chain(taken.surface.keep()).chain(taken.rays.keep()).collect();
-    let plan = graph.plan(&NeedsAll, &keep)?;
+    let plan = graph.plan(registry, &keep)?;
     Ok((taken, plan))
 }
