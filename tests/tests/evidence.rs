@@ -141,3 +141,31 @@ fn the_table_of_the_light_change_is_its_evidence() {
         format!("| `{}` | {} | {} frames |", text(row, "graph"), errors.join(" | "), number(row, "frames above twice"))
     });
 }
+
+/// One line a case, with what came of each graph.
+#[test]
+fn the_table_of_stress_is_its_evidence() {
+    let evidence: Value = serde_json::from_str(&read("docs/evidence/stress.json")).expect("the evidence is JSON");
+    let rows = evidence["rows"].as_array().expect("rows");
+    let word = |row: &Value| match text(row, "outcome") {
+        "passed" => "pass".to_owned(),
+        "failed" => format!("**{:+.0} %**", 100.0 * number(&row["bias"], "value")),
+        "not_resolved" => format!("± {:.0} %", 100.0 * number(&row["bias"], "standard_error")),
+        other => other.to_owned(),
+    };
+    let mut graphs: Vec<&str> = Vec::new();
+    for graph in rows.iter().map(|row| text(row, "graph")) {
+        if !graphs.contains(&graph) {
+            graphs.push(graph);
+        }
+    }
+    let line = |rows: &[Value]| {
+        let cell = |graph: &&str| rows.iter().find(|row| text(row, "graph") == *graph).map_or("not run".to_owned(), word);
+        let cells: Vec<String> = graphs.iter().map(cell).collect();
+        format!("| `{}` | {} |", text(&rows[0], "case"), cells.join(" | "))
+    };
+    let table: Vec<String> = rows.chunk_by(|a, b| a["case"] == b["case"]).map(line).collect();
+    let page = read("docs/stress.md");
+    let shown: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    assert_eq!(shown, table, "docs/stress.md should hold:\n{}", table.join("\n"));
+}

@@ -1,9 +1,13 @@
-//! Extreme and stiff cases: a few of them run, and a planted bug is found.
+//! Extreme and stiff cases: a few of them run, a planted bug is found, and the lists of graphs that do not pass are what the evidence says.
 
 use aquifer_graph::{Document, Shelf};
 use aquifer_lab::stress::{self, Bench, Effort, Outcome, Row};
 use aquifer_tests::{context, scene};
-use std::path::PathBuf;
+use serde_json::Value;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 const EFFORT: Effort = Effort { seeds: [4, 32], truth: 256 };
 
@@ -61,4 +65,28 @@ fn a_thousand_frames_neither_drift_nor_grow() {
     let run = stress::long(&context, &scene("cornell"), ("restir_full", &document("restir_full")), [32, 18], 1000);
     let run = run.unwrap_or_else(|error| panic!("{error}")).expect("it has history");
     assert!(run.is_good(), "{}", run.sentence());
+}
+
+/// (case, graph).
+type Pair = (String, String);
+
+fn evidence() -> Vec<Value> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/evidence/stress.json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let all: Value = serde_json::from_str(&text).expect("the evidence is JSON");
+    all["rows"].as_array().expect("rows").clone()
+}
+
+#[test]
+fn the_lists_of_graphs_that_do_not_pass_are_right_both_ways() {
+    let text = |row: &Value, key: &str| row[key].as_str().unwrap_or_default().to_owned();
+    let pair = |row: &Value| (text(row, "case"), text(row, "graph"));
+    let is_good = |row: &Value| ["passed", "limited", "refused"].contains(&text(row, "outcome").as_str());
+    let rows = evidence();
+    let measured: BTreeSet<Pair> = rows.iter().map(pair).collect();
+    assert!(stress::all().all(|case| measured.iter().any(|(name, _)| name == case.name)), "a case was not measured");
+    let found: BTreeSet<Pair> = rows.iter().filter(|row| !is_good(row)).map(pair).collect();
+    let of_case = |case: &'static stress::Case| case.known.iter().map(|known| (case.name.to_owned(), known.graph.to_owned()));
+    let listed: BTreeSet<Pair> = stress::all().flat_map(of_case).collect();
+    assert_eq!(found, listed);
 }

@@ -75,7 +75,7 @@ fn every_switch_is_turned_off_by_itself() {
         assert_eq!(switches.len(), count, "{graph}: {switches:?}");
         for switch in &switches {
             let rest: Vec<&String> = switches.iter().filter(|other| *other != switch).collect();
-            assert_eq!(off(&[switch.clone()]).iter().collect::<Vec<_>>(), rest, "{graph} without {switch}");
+            assert_eq!(off(std::slice::from_ref(switch)).iter().collect::<Vec<_>>(), rest, "{graph} without {switch}");
         }
         assert!(off(&switches.into_iter().collect::<Vec<_>>()).is_empty());
     }

@@ -32,7 +32,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Effort { seeds: [4, 64], truth: 512 }
+        Effort { seeds: [4, 128], truth: 512 }
     }
 }
 
@@ -97,6 +97,7 @@ impl<'a> Bench<'a> {
         let truths = if self.case.looks == Looks::Once { Vec::new() } else { self.truths(&transport)? };
         let mut seen = Seen::new(self.case.looks);
         let [least, most] = if self.case.looks == Looks::Once { [1, 1] } else { self.effort.seeds };
+        let most = most * self.case.scarcity();
         for seed in 0..most {
             seen.add(&shooter.shoot(seed, self.case.looks.frames())?)?;
             seen.tell(&mut row, &truths);
@@ -164,7 +165,7 @@ impl<'a> Bench<'a> {
         let globals = SceneGlobals::new(self.context, place.scene.clone(), view)?;
         let options = RendererOptions { size: self.case.size, seed: TRUTH_SEED, ..RendererOptions::default() };
         let mut renderer = Renderer::new(self.context, &place.registry, plan, Box::new(globals), options)?;
-        for _ in 0..self.effort.truth.div_ceil(TRUTH_PATHS).max(2) {
+        for _ in 0..(self.effort.truth * self.case.scarcity() as u32).div_ceil(TRUTH_PATHS).max(2) {
             renderer.frame()?;
         }
         let film = capture.radiance(&mut renderer)?;

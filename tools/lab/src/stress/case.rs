@@ -90,6 +90,12 @@ impl Case {
         Case { name, about, scene, truth: None, size: Self::SMALL, turned: &[], looks: Looks::Still, known: &[] }
     }
 
+    /// How many times as many samples of a pixel are affordable, and needed, as in a case of the usual size.
+    pub fn scarcity(&self) -> u64 {
+        let pixels = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+        (pixels(Self::SMALL) / pixels(self.size)).clamp(1, 16)
+    }
+
     /// Why the graph is known not to pass.
     pub fn known(&self, graph: &str) -> Option<&'static str> {
         self.known.iter().find(|known| known.graph == graph).map(|known| known.why)

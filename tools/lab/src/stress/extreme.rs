@@ -11,10 +11,24 @@ use glam::{Mat3, Quat, Vec3};
 
 const NOISE: &str = "one sample of a light a pixel, of which few matter: noise";
 
+const CORNER: &str = "few paths find what a lamp of 1e-8 m² sends round a corner: noise";
+const MIRROR: &str =
+    "points of lights drawn without regard to the BSDF never meet the lobe of a mirror: its picture of the lamp is missing";
+
+/// Graphs that draw points of lights, and nothing else.
+const LIGHTS_ONLY: &[Known] = &[
+    Known { graph: "light_sampling", why: MIRROR },
+    Known { graph: "ris_only", why: MIRROR },
+    Known { graph: "restir_di_unbiased", why: MIRROR },
+];
+
 /// Every still case.
 pub(super) const CASES: &[Case] = &[
     Case::still("emission_range", "six cells, lit by lamps of radiance 1e-6 to 1e9", emission_range),
-    Case::still("lamp_sizes", "a lamp 1e-4 m wide beside one 100 m long", lamp_sizes),
+    Case {
+        known: &[Known { graph: "path_tracer_indirect", why: CORNER }],
+        ..Case::still("lamp_sizes", "a lamp 1e-4 m wide beside one 100 m long", lamp_sizes)
+    },
     Case::still("touching_lamp", "a lamp that stands on the floor: 1/r² without bound", touching_lamp),
     Case { truth: Some(cornell), ..Case::still("far_1e4", "cornell 1e4 m from the origin", || moved(1.0, 1e4)) },
     Case { truth: Some(cornell), ..Case::still("far_1e6", "cornell 1e6 m from the origin", || moved(1.0, 1e6)) },
@@ -25,7 +39,7 @@ pub(super) const CASES: &[Case] = &[
         known: &[Known { graph: "light_sampling", why: NOISE }],
         ..Case::still("grazing", "a long floor seen and lit at a grazing angle", grazing)
     },
-    Case::still("sharp_and_rough", "metal of α → 0 beside plastic of α = 1", sharp_and_rough),
+    Case { known: LIGHTS_ONLY, ..Case::still("sharp_and_rough", "metal of α → 0 beside plastic of α = 1", sharp_and_rough) },
     Case::still("black", "a room that reflects nothing", || boxed([0.0; 3])),
     Case::still("white", "a furnace: a white ball in even light", || furnace_of(matte("white", [1.0; 3]))),
     Case::still("one_light", "a single point light", one_light),
@@ -43,6 +57,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         turned: &[("normal", Turned::Least), ("depth", Turned::Least)],
+        known: LIGHTS_ONLY,
         ..Case::still("no_neighbour", "no pixel is like any other: neighbours are sought in vain", sharp_and_rough)
     },
 ];
