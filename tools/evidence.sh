@@ -13,6 +13,7 @@
 #     tools/evidence.sh stress [CASE …]
 #     tools/evidence.sh long [GRAPH …]
 #     tools/evidence.sh leaving_out [MINUTES] [GRAPH@SCENE …]
+#     tools/evidence.sh viewer [MINUTES]
 #
 # external: the path tracer against Mitsuba 3 (tests/external), until each case is resolved; held_out: the same for small unusual glTF files.
 # PYTHON names an interpreter that has tests/external/requirements.txt. The program must be built from a commit, without changes.
@@ -25,6 +26,7 @@
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
 # leaving_out: every graph on every scene with and without what the scene does not need, and what that saves (with the machine to itself); some ten
 # seconds a pair, most of it the driver's compiler.
+# viewer: first pictures, pictures a second, and memory over so many minutes without and with switching of graphs.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -42,6 +44,9 @@ held_out)
 compare_aa)
     cargo build --quiet -p aquifer
     tools/evidence/compare_aa.sh target/debug/aquifer docs/evidence/compare_aa.json "$(git rev-parse HEAD)" "$(date -u +%F)"
+    ;;
+viewer)
+    cargo run --quiet --manifest-path tools/viewer/Cargo.toml --example viewer_evidence -- docs/evidence/viewer.json "$(git rev-parse HEAD)" "$(date -u +%F)" "${1:-30}"
     ;;
 restir_di | restir_gi)
     minutes=${1:-600}
@@ -69,7 +74,7 @@ stress | long)
     ;;
 *)
     echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change," \
-        "error_parts, leaving_out, stress, long" >&2
+        "error_parts, leaving_out, stress, long, viewer" >&2
     exit 2
     ;;
 esac

@@ -14,6 +14,7 @@ import package::restir::neighbour::{NOWHERE, similarity};
 import package::restir::reproject::{exactly, pixel_before};
 import package::restir::reservoir::{Reservoir};
 import package::restir::ris::{resample};
+import package::restir::witness::{tell_of};
 import package::slot::domain::{changed, visible};
 import package::surface::{is_surface, unpack_surface};
 
@@ -53,6 +54,7 @@ override validate_every: u32 = 0u;
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
     let at = index_of(id.xy);
+    tell_of(id.xy);
     let record = surface[at];
     var kept: Reservoir;
     var lost = false;

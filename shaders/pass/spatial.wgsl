@@ -15,6 +15,7 @@ import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
 import package::restir::neighbour::{NOWHERE, neighbour, similarity};
 import package::restir::reproject::{exactly, pixel_before};
 import package::restir::reservoir::{Reservoir};
+import package::restir::witness::{tell_of};
 import package::slot::mis::{combine};
 import package::surface::{is_surface, unpack_surface};
 
@@ -91,6 +92,7 @@ fn is_stale(pixel: u32) -> bool {
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (!inside(id.xy)) { return; }
     let at = index_of(id.xy);
+    tell_of(id.xy);
     let record = surface[at];
     if (!is_surface(record)) {
         reservoir[at] = current[at];

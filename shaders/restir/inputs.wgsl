@@ -7,6 +7,7 @@
 
 import package::frame::frame::{NOW};
 import package::restir::reservoir::{Reservoir};
+import package::restir::witness::{tell_carried};
 import package::slot::domain::{Sample, p_hat, shift, visible};
 import package::slot::visibility::{IN_TARGET};
 import package::surface::{Surface, SurfaceRecord, unpack_surface};
@@ -90,13 +91,18 @@ fn target_from(y: Sample, at: Surface, src: Surface) -> f32 {
 /// The sample of an input, carried to the receiver. The canonical is at home: where targets hold visibility, it was tested when it was made.
 fn candidate(at: Surface, from_input: Input, is_canonical: bool) -> Candidate {
     let r = reservoir_at(from_input.pixel, from_input.when);
-    if (r.weight.value <= 0.0) { return Candidate(r.sample, 0.0, 0.0, 0.0); }
+    if (r.weight.value <= 0.0) {
+        tell_carried(from_input.pixel, from_input.when, 0.0, 0.0);
+        return Candidate(r.sample, 0.0, 0.0, 0.0);
+    }
     if (is_canonical) {
         let here = p_hat(r.sample, at);
+        tell_carried(from_input.pixel, from_input.when, r.weight.value, 1.0);
         return Candidate(r.sample, here, r.weight.value, here);
     }
     let src = surface_of_input(from_input);
     let y = move_to(r.sample, src, at);
+    tell_carried(from_input.pixel, from_input.when, r.weight.value, y.jacobian);
     if (y.p_hat <= 0.0) { return Candidate(r.sample, 0.0, 0.0, 0.0); }
     return Candidate(y.sample, y.p_hat, r.weight.value * y.jacobian, p_hat(r.sample, src) / y.jacobian);
 }

@@ -4,9 +4,10 @@ import package::base::rng::{Rng, pcg4d, rng_next4};
 import package::frame::frame::{BEFORE, camera_at, film_sample, frame, index_of};
 import package::frame::random::{random_stage};
 import package::restir::inputs::{previous_surface};
-import package::restir::neighbour::{NOWHERE, Similarity, disk, on_film, similar};
+import package::restir::neighbour::{LIKE, NOT_THERE, NOWHERE, Similarity, disk, on_film, unlike};
+import package::restir::witness::{tell_looked};
 import package::scene::geometry::{position_of};
-import package::surface::{SurfaceRecord, is_surface};
+import package::surface::{SurfaceRecord};
 
 struct Search {
     /// Further pixels that are tried where the first is not alike.
@@ -36,10 +37,14 @@ fn pixel_before(pixel: vec2<u32>, motion: vec2<f32>, record: SurfaceRecord, sear
         // The nearest of last frame's film samples.
         var there = vec2<i32>(floor(film + offset - jitter + 0.5));
         if (i == 0u && search.permute) { there = permuted(there); }
-        if (!on_film(there, frame.extent)) { continue; }
+        if (!on_film(there, frame.extent)) {
+            tell_looked(there, BEFORE, NOT_THERE);
+            continue;
+        }
         let index = index_of(vec2<u32>(there));
-        let other = previous_surface[index];
-        if (is_surface(other) && similar(record, distance, other, limits)) { return index; }
+        let verdict = unlike(record, distance, previous_surface[index], limits);
+        tell_looked(there, BEFORE, verdict);
+        if (verdict == LIKE) { return index; }
     }
     return NOWHERE;
 }

@@ -5,6 +5,7 @@
 //! estimates ∫ f without bias wherever Σ m_i = 1 on f's support (Bitterli et al. 2020, § 3.1; Lin et al. 2022).
 
 import package::base::math::{is_finite};
+import package::restir::witness::{tell_offered};
 import package::slot::domain::{Sample};
 import package::slot::visibility::{Weight};
 
@@ -36,7 +37,9 @@ fn update(s: ptr<function, Selection>, sample: Sample, p_hat: f32, w: f32, u: f3
 /// Offers what a reservoir kept: it counts with the reservoir's confidence, also where nothing was kept.
 fn merge(s: ptr<function, Selection>, sample: Sample, p_hat: f32, w: f32, confidence: f32, u: f32) -> bool {
     (*s).confidence += confidence;
-    return offer(s, sample, p_hat, w, u);
+    let adopted = offer(s, sample, p_hat, w, u);
+    tell_offered(p_hat, w, adopted);
+    return adopted;
 }
 
 /// True when the sample was adopted. A weight that is no number is dropped: it would never leave the history again.

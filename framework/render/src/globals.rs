@@ -1,6 +1,7 @@
 //! What every pass shares: group 0, found by qualified name.
 
 use crate::{Batch, Context, Error};
+use aquifer_scene::Camera;
 
 /// Where a frame stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,9 @@ pub trait Globals: Send {
 
     /// Goes to another time of what moves, from the next frame on: seconds at frame 0, and from one frame to the next.
     fn set_time(&mut self, _time: f32, _step: f32) {}
+
+    /// Looks from there, from the next frame on; `None`: through the camera that was named.
+    fn set_camera(&mut self, _camera: Option<Camera>) {}
 
     /// The triangles that [`crate::Frame::scene`] gives to passes that draw.
     fn batches(&self) -> &[Batch] {

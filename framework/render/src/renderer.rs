@@ -2,6 +2,7 @@
 
 use crate::{Context, Error, FrameInfo, Globals, MemoryReport, PortCounts, Registry, Startup, Timings, executor::Executor, readback};
 use aquifer_graph::{Plan, Value};
+use aquifer_scene::Camera;
 
 /// How to render.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -135,6 +136,11 @@ impl Renderer {
     /// Goes to another time of the scene from the next frame on: seconds at frame 0, and from one frame to the next. History stays as it is.
     pub fn set_time(&mut self, time: f32, step: f32) {
         self.globals.set_time(time, step);
+    }
+
+    /// Looks from there, from the next frame on; `None`: through the camera that was named. History stays as it is.
+    pub fn set_camera(&mut self, camera: Option<Camera>) {
+        self.globals.set_camera(camera);
     }
 
     /// Sets a live parameter from the next frame on; history stays as it is.

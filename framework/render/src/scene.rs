@@ -10,7 +10,7 @@ mod store;
 mod wide;
 
 use crate::{Batch, Context, Error, FrameInfo, Globals};
-use aquifer_scene::{Features, Scene};
+use aquifer_scene::{Camera, Features, Scene};
 use moving::{Moving, State};
 use std::sync::{Arc, OnceLock};
 use still::Still;
@@ -21,6 +21,8 @@ use wide::Wide;
 pub struct View {
     /// Name of the camera; `None` is the scene's first.
     pub camera: Option<String>,
+    /// Looks from here, whatever the named camera does.
+    pub free: Option<Camera>,
     /// Seconds at frame 0.
     pub time: f32,
     /// Seconds from one frame to the next; 0 stands still.
@@ -163,6 +165,10 @@ impl Globals for SceneGlobals {
 
     fn set_time(&mut self, time: f32, step: f32) {
         (self.view.time, self.view.step) = (time, step);
+    }
+
+    fn set_camera(&mut self, camera: Option<Camera>) {
+        self.view.free = camera;
     }
 
     fn batches(&self) -> &[Batch] {

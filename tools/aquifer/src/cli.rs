@@ -1,5 +1,7 @@
 //! What can be typed.
 
+#[cfg(feature = "viewer")]
+use crate::command::view;
 use crate::{
     command::{
         adapters, bench, check, compare, completions, diff, dot, explain, graphs, man, merge, passes, regress, render, report, scenes,
@@ -44,6 +46,9 @@ pub enum Command {
     Render(render::Args),
     /// Compare graphs at equal time: who has less error, and by how much
     Compare(compare::Args),
+    /// Open a window: one graph, or two at equal time, live
+    #[cfg(feature = "viewer")]
+    View(view::Args),
     /// Check a graph, and say whether it is unbiased
     Check(check::Args),
     /// Say what a graph leaves out on a scene, because of which fact, and what that saves
@@ -86,6 +91,8 @@ impl Command {
         match self {
             Self::Render(args) => render::run(args, ui),
             Self::Compare(args) => compare::run(args, ui),
+            #[cfg(feature = "viewer")]
+            Self::View(args) => view::run(args),
             Self::Check(args) => check::run(args, ui),
             Self::Explain(args) => explain::run(args, ui),
             Self::Dot(args) => dot::run(args, ui),

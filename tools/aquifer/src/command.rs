@@ -18,3 +18,5 @@ pub mod report;
 pub mod scenes;
 pub mod schema;
 pub mod stress;
+#[cfg(feature = "viewer")]
+pub mod view;

@@ -33,6 +33,15 @@ impl Failure {
         }
     }
 
+    /// What is wrong, in plain words.
+    pub fn words(&self) -> String {
+        match self {
+            Self::Failed(error) | Self::Temporary(error) => chain(error.as_ref()),
+            Self::Graph(list) => list.to_string(),
+            Self::ReaderGone => String::new(),
+        }
+    }
+
     /// Says what is wrong.
     pub fn report(&self, ui: &Ui) {
         match self {

@@ -1,7 +1,7 @@
 //! What commands are given: graphs, scenes and shaders, by name or by file.
 
 use crate::{failure::Failure, ui::Ui, value};
-use aquifer_graph::{Document, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
+use aquifer_graph::{Document, Faults, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
 use aquifer_lab::{bench::auto, stage};
 use aquifer_render::{Context, Registry};
 use aquifer_scene::{Environment, Features, Scene};
@@ -38,7 +38,7 @@ pub struct ShaderArgs {
 }
 
 /// A scene.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub struct SceneArgs {
     /// A built-in scene (see `aquifer scenes list`) or a .glb or .gltf file
     #[arg(long, value_name = "SCENE", default_value = "cornell")]
@@ -74,7 +74,7 @@ impl GraphArgs {
 
     /// The graph's text as its files have it.
     fn written(&self) -> Result<Document, Failure> {
-        Ok(Document::load(&file_name(&self.graph), &files())?)
+        Ok(load_graph(&self.graph)?)
     }
 
     /// What the command line lays over it.
@@ -205,6 +205,11 @@ fn identity(path: &Path) -> Result<String, Failure> {
 pub fn text_of(graph: &Graph) -> String {
     let part = |source: &Source| format!("# {}\n{}\n", source.name, source.text.trim_end());
     graph.sources().iter().map(part).collect::<Vec<_>>().join("\n")
+}
+
+/// A graph by its name or file, as its texts have it.
+pub fn load_graph(graph: &str) -> Result<Document, Faults> {
+    Document::load(&file_name(graph), &files())
 }
 
 /// Graph files on disk, over the built-in ones.

@@ -87,7 +87,7 @@ fn listen_to_libraries(verbose: u8, color: bool) {
     let level = match verbose {
         0 => "warn",
         1 => {
-            "warn,aquifer=info,aquifer_graph=info,aquifer_shader=info,aquifer_scene=info,aquifer_render=info,aquifer_passes=info,aquifer_lab=info"
+            "warn,aquifer=info,aquifer_graph=info,aquifer_shader=info,aquifer_scene=info,aquifer_render=info,aquifer_passes=info,aquifer_lab=info,aquifer_viewer=info"
         }
         _ => "debug",
     };

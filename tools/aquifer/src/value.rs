@@ -21,6 +21,18 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
     Ok([side(width)?, side(height)?])
 }
 
+/// `X,Y,Z:X,Y,Z`: where a camera stands, and what it looks at.
+pub fn look(text: &str) -> Result<[[f32; 3]; 2], String> {
+    let refused = || "write FROM:AT, each as X,Y,Z, e.g. 0,1,5:0,1,0".to_owned();
+    let point = |text: &str| -> Option<[f32; 3]> {
+        let numbers: Vec<f32> =
+            text.split(',').map(|number| number.trim().parse().ok().filter(|n: &f32| n.is_finite())).collect::<Option<_>>()?;
+        numbers.try_into().ok()
+    };
+    let (from, at) = text.split_once(':').ok_or_else(refused)?;
+    Ok([point(from).ok_or_else(refused)?, point(at).ok_or_else(refused)?])
+}
+
 /// Seconds, more than none.
 pub fn seconds(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('s').trim().parse::<f64>() {

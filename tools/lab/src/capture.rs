@@ -6,7 +6,7 @@
 use crate::film::{Film, FilmError};
 use aquifer_graph::{Graph, Plan, PortId, Value, When, WireType};
 use aquifer_render::Renderer;
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 /// Element of the resource that holds running means: members `mean`, `count` and `squares`.
 pub const MOMENTS: &str = "Moments";
@@ -74,6 +74,19 @@ impl Capture {
     /// The resource that holds the radiance of a single frame: what is averaged, or the output where nothing is.
     pub fn frame_port(&self, graph: &Graph) -> PortId {
         self.frame.unwrap_or(graph.output())
+    }
+
+    /// Names of the nodes that the radiance of a frame needs, in this frame or in frames before: what only shows or averages is not among them.
+    pub fn makers(&self, graph: &Graph) -> BTreeSet<String> {
+        let mut open = vec![self.frame_port(graph).node];
+        let mut needed = BTreeSet::new();
+        while let Some(node) = open.pop() {
+            let node = &graph.nodes()[node];
+            if needed.insert(node.name.clone()) {
+                open.extend(node.wires.iter().flatten().map(|wire| wire.from.node));
+            }
+        }
+        needed
     }
 
     /// Radiance of the last frame alone, from the resource that [`Capture::frame_port`] names.

@@ -10,7 +10,8 @@ mod png;
 pub use area::{Area, AreaError, Region};
 pub use facts::{Facts, GraphText, Overlap, Run, Runs};
 pub use merge::{MergeError, merge};
-pub(crate) use png::{bytes as png_bytes, linear, srgb};
+pub(crate) use png::{bytes as png_bytes, srgb};
+pub use png::{encode, linear};
 
 use crate::atomic::WriteError;
 use std::path::{Path, PathBuf};

@@ -72,12 +72,12 @@ impl State {
             Array { now: "scene/bounds::bounds", fact: "", before: "", before_fact: "", table: false, bytes: bytes(&[bounds(&tlas)]) },
         ];
         let drawable = if list.table.is_empty() { 0 } else { list.lights.len() as u32 };
-        Ok(State { time, view: view.clone(), camera: moment.camera, arrays, lights: drawable, depth: tlas.bvh.depth })
+        Ok(State { time, view: view.clone(), camera: view.free.unwrap_or(moment.camera), arrays, lights: drawable, depth: tlas.bvh.depth })
     }
 
     /// Nothing would change.
     pub fn is_at(&self, view: &View, time: f32) -> bool {
-        self.time == time && self.view.camera == view.camera
+        self.time == time && self.view.camera == view.camera && self.view.free == view.free
     }
 }
 

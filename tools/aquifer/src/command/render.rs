@@ -30,6 +30,9 @@ pub struct Args {
     /// The scene's camera of this name; without it the first
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
+    /// Where the camera stands and what it looks at, in place of where the scene has it; the lens stays
+    #[arg(long, value_name = "X,Y,Z:X,Y,Z", value_parser = value::look, allow_hyphen_values = true)]
+    look: Option<[[f32; 3]; 2]>,
     /// Seconds into the scene's animation
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
     animation_time: f32,

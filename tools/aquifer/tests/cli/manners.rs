@@ -49,3 +49,14 @@ fn completions_and_pages_are_made() {
     let pages = crate::run::names(folder.path());
     assert!(pages.contains(&"aquifer.1".to_owned()) && pages.contains(&"aquifer-render.1".to_owned()), "{pages:?}");
 }
+
+#[cfg(all(feature = "viewer", target_os = "linux"))]
+#[test]
+fn without_a_display_the_viewer_names_what_works() {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_aquifer"));
+    let output =
+        command.arg("view").env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output().expect("the program was built with this test");
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{words}");
+    assert!(words.contains("aquifer compare") && words.contains("DISPLAY"), "{words}");
+}

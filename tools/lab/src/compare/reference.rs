@@ -76,7 +76,7 @@ impl Tracer {
         let graph = stage.graph(&document, None)?;
         let capture = Capture::of(&graph);
         let plan = graph.plan(&stage.registry, &capture.keep())?;
-        let view = View { camera: stage.camera.clone(), time, step: 0.0, centred: stage.centred };
+        let view = View { camera: stage.camera.clone(), free: None, time, step: 0.0, centred: stage.centred };
         let globals = SceneGlobals::new(&stage.context, stage.scene.clone(), view)?;
         let options = RendererOptions { size: stage.size, ..RendererOptions::default() };
         let renderer = Renderer::new(&stage.context, &stage.registry, plan, Box::new(globals), options)?;

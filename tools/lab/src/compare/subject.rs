@@ -2,10 +2,10 @@
 
 use super::error::CompareError;
 use crate::{capture::Capture, film::Film};
-use aquifer_graph::{Document, Graph, PortId, Source, Value};
+use aquifer_graph::{Document, Graph, Source, Value};
 use aquifer_render::{Clock, Context, Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::Scene;
-use std::{collections::BTreeSet, sync::Arc, time::Instant};
+use std::{sync::Arc, time::Instant};
 
 /// Where graphs are measured.
 pub struct Stage {
@@ -59,7 +59,7 @@ impl Stage {
     /// Camera and time such that frame number `frame` is at the stage's time.
     fn view(&self, step: f32, frame: u32) -> View {
         let time = (f64::from(self.time) - f64::from(step) * f64::from(frame)) as f32;
-        View { camera: self.camera.clone(), time, step, centred: self.centred }
+        View { camera: self.camera.clone(), free: None, time, step, centred: self.centred }
     }
 
     /// Checks a graph, its knob at `knob` or as written.
@@ -83,7 +83,7 @@ impl Stage {
         let capture = Capture::of(&graph);
         let frame = graph.port_name(capture.frame_port(&graph));
         let plan = graph.plan(&self.registry, &[&frame])?;
-        let needed = upstream(&graph, capture.frame_port(&graph));
+        let needed = capture.makers(&graph);
         let counted = plan.steps.iter().map(|step| needed.contains(&step.node)).collect();
         let view = if capture.independent() { self.view(0.0, 0) } else { self.view(self.step, warm_up) };
         let globals = SceneGlobals::new(&self.context, self.scene.clone(), view)?;
@@ -185,17 +185,4 @@ pub struct KnobRange {
     pub now: f64,
     /// Only whole numbers.
     pub whole: bool,
-}
-
-/// Names of the nodes that a port needs, this frame or in frames before.
-fn upstream(graph: &Graph, port: PortId) -> BTreeSet<String> {
-    let mut open = vec![port.node];
-    let mut needed = BTreeSet::new();
-    while let Some(node) = open.pop() {
-        let node = &graph.nodes()[node];
-        if needed.insert(node.name.clone()) {
-            open.extend(node.wires.iter().flatten().map(|wire| wire.from.node));
-        }
-    }
-    needed
 }

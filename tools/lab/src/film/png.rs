@@ -30,8 +30,8 @@ pub(super) fn read(path: &Path) -> Result<Film, FilmError> {
     Film::new([picture.width(), picture.height()], color)
 }
 
-/// To 8 bits. NaN becomes 0.
-fn encode(linear: f32) -> u8 {
+/// A linear value as a screen takes it, in 8 bits. NaN becomes 0.
+pub fn encode(linear: f32) -> u8 {
     (srgb(linear) * 255.0).round() as u8
 }
 
@@ -41,8 +41,8 @@ pub(crate) fn srgb(linear: f32) -> f32 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The inverse of [`srgb`].
-pub(crate) fn linear(encoded: f32) -> f32 {
+/// What a screen makes of an encoded value, 0 to 1: the inverse of the IEC 61966-2-1 transfer function.
+pub fn linear(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -17,7 +17,7 @@ use aquifer_lab::{
     rays::RayCounters,
 };
 use aquifer_render::{Context, ContextOptions, Registry, Renderer, RendererOptions, SceneGlobals, View};
-use aquifer_scene::Scene;
+use aquifer_scene::{Camera, Scene};
 use std::{
     path::PathBuf,
     sync::Arc,
@@ -60,7 +60,7 @@ impl<'a> Job<'a> {
             (graph, registry) = source.check_with(Some(&scene), edits)?;
         }
         let (taken, plan) = planned(&graph, &registry)?;
-        let view = View { camera: args.camera.clone(), ..view };
+        let view = View { camera: args.camera.clone(), free: looking(args, &scene)?, ..view };
         let globals = SceneGlobals::keeping(&context, scene.clone(), view.clone(), &args.graph.shaders.features(&scene))?;
         let options =
             RendererOptions { size: args.size, seed: args.seed, first_frame, counters: args.counters, ..RendererOptions::default() };
@@ -125,7 +125,8 @@ impl<'a> Job<'a> {
     pub fn write(&mut self, paths: &[PathBuf], spent: State, began: Instant) -> Result<Summary, Failure> {
         let facts = self.facts(spent)?;
         let set_up = began.elapsed().saturating_sub(Duration::from_secs_f64(spent.seconds));
-        let camera = self.scene.at(facts.animation_time, self.view.camera.as_deref())?.camera;
+        let named = self.scene.at(facts.animation_time, self.view.camera.as_deref())?.camera;
+        let camera = self.view.free.unwrap_or(named);
         let Taken { capture, surface, rays } = &self.taken;
         let film = Film { facts: Some(facts), ..capture.radiance(&mut self.renderer)? };
         let film = surface.add_to(film, &mut self.renderer, &camera)?;
@@ -144,7 +145,8 @@ impl<'a> Job<'a> {
         // Without a mean over frames, the film is that of the last one.
         let frames = if self.taken.capture.averages() { spent.frames } else { 1 };
         let next = self.renderer.next_frame();
-        let camera = self.view.camera.clone().or_else(|| self.scene.camera_names().into_iter().next()).unwrap_or_default();
+        let name = self.view.camera.clone().or_else(|| self.scene.camera_names().into_iter().next()).unwrap_or_default();
+        let camera = self.args.look.map_or(name, |[from, at]| format!("{from:?} looking at {at:?}"));
         Ok(Facts {
             samples_per_pixel: u32::try_from(frames).unwrap_or(u32::MAX).saturating_mul(Capture::samples_per_frame(&self.graph)),
             render_seconds: spent.seconds,
@@ -159,6 +161,15 @@ impl<'a> Job<'a> {
             version: VERSION.to_owned(),
         })
     }
+}
+
+/// The camera that `--look` puts up.
+fn looking(args: &Args, scene: &Scene) -> Result<Option<Camera>, Failure> {
+    let Some([from, at]) = args.look else { return Ok(None) };
+    let lens = scene.at(args.animation_time, args.camera.as_deref())?.camera;
+    let camera =
+        lens.looking(from.into(), at.into()).ok_or_else(|| Failure::new("--look needs two points, one not straight above the other"))?;
+    Ok(Some(camera))
 }
 
 /// What is taken off a graph, and the plan that keeps it.
