@@ -169,3 +169,11 @@ fn the_table_of_stress_is_its_evidence() {
     let shown: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
     assert_eq!(shown, table, "docs/stress.md should hold:\n{}", table.join("\n"));
 }
+
+#[test]
+fn the_table_of_graphs_held_against_themselves_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" runs |");
+    assert_table("docs/compare.md", "docs/evidence/compare_aa.json", shown, |row| {
+        format!("| `{}` | {} runs | {} |", text(row, "graph"), number(row, "runs"), number(row, "verdicts"))
+    });
+}

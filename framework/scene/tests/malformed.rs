@@ -245,3 +245,15 @@ fn not_gltf_at_all() {
         assert!(attempt(&glb(text.as_bytes(), &[]), "text in a container").is_err());
     }
 }
+
+/// Files that fuzzing starts from or has found (`tools/fuzz.sh scene`), read without a fuzzer.
+#[test]
+fn what_fuzzing_keeps_is_refused_or_loads_whole() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/scene");
+    let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(files.len() >= 4, "{files:?}");
+    for file in files {
+        let loaded = attempt(&std::fs::read(&file).unwrap(), &file.display().to_string());
+        assert!(loaded.is_ok() || file.extension().is_none(), "{}: only files that the fuzzer named may be refused", file.display());
+    }
+}

@@ -148,9 +148,14 @@ fn title(report: &Report) -> String {
     let graphs: Vec<&str> = report.graphs.iter().map(|graph| graph.name.as_str()).collect();
     match (graphs.as_slice(), report.scenes.as_slice()) {
         ([], _) => "Comparison".into(),
-        (graphs, [scene]) => format!("{} on {}", graphs.join(" · "), scene.name),
-        (graphs, scenes) => format!("{} on {} scenes", graphs.join(" · "), scenes.len()),
+        (graphs, [scene]) => format!("{} on {}", several(graphs), scene.name),
+        (graphs, scenes) => format!("{} on {} scenes", several(graphs), scenes.len()),
     }
+}
+
+/// Names, while they fit into a title.
+fn several(graphs: &[&str]) -> String {
+    if graphs.len() > 4 { format!("{} graphs", graphs.len()) } else { graphs.join(" · ") }
 }
 
 impl Row {

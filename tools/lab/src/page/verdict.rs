@@ -1,8 +1,14 @@
 //! The result in words.
 
 use super::words::{number, signed_percent};
-use crate::compare::report::{Better, BiasFigures, BiasVerdict, Cell, Pair, Ratio, Reach, Report, SceneResult};
+use crate::compare::{
+    judge,
+    report::{Better, BiasFigures, BiasVerdict, Cell, Pair, Ratio, Reach, Report, SceneResult},
+};
 use serde::Serialize;
+
+/// More verdicts than these are told in a list, under one word on all of them.
+const MOST_LEADS: usize = 3;
 
 /// What is said of one graph.
 #[derive(Debug, Serialize)]
@@ -25,8 +31,10 @@ pub(super) fn of(report: &Report) -> Vec<Verdict> {
     if report.scenes.iter().all(|scene| scene.cells.is_empty()) {
         return vec![Verdict { lead: "Nothing was measured.".into(), sentences: vec![] }];
     }
-    let mut verdicts: Vec<Verdict> =
-        graphs.clone().skip(1).map(|graph| Verdict { lead: lead(report, graph), sentences: sentences(report, graph) }).collect();
+    let mut verdicts: Vec<Verdict> = match report.graphs.len() > MOST_LEADS + 1 {
+        true => vec![many(report)],
+        false => graphs.clone().skip(1).map(|graph| Verdict { lead: lead(report, graph), sentences: sentences(report, graph) }).collect(),
+    };
     if verdicts.is_empty() {
         verdicts.push(Verdict { lead: alone(report), sentences: vec![] });
     }
@@ -103,11 +111,26 @@ fn sentences(report: &Report, graph: usize) -> Vec<Item> {
     if pairs.len() == 1 {
         return vec![];
     }
-    let item = |(scene, pair): &(&SceneResult, &Pair)| {
-        let (kind, mark) = kind(pair.better);
-        Item { kind, mark, text: format!("{}: {}", scene.name, pair.sentence) }
+    pairs.into_iter().map(|(scene, pair)| item(scene, pair)).collect()
+}
+
+fn item(scene: &SceneResult, pair: &Pair) -> Item {
+    let (kind, mark) = kind(pair.better);
+    Item { kind, mark, text: format!("{}: {}", scene.name, pair.sentence) }
+}
+
+/// Of many graphs, as in a sweep: who is beaten by none, and every pair in the list.
+fn many(report: &Report) -> Verdict {
+    let front = |scene: &SceneResult| {
+        let names = judge::front(&scene.cells).into_iter().map(|cell| format!("`{}`", report.graphs[scene.cells[cell].graph].name));
+        format!("{} on {}", names.collect::<Vec<_>>().join(", "), scene.name)
     };
-    pairs.iter().map(item).collect()
+    let fronts: Vec<String> = report.scenes.iter().map(front).collect();
+    let sentences = report.scenes.iter().flat_map(|scene| scene.pairs.iter().map(|pair| item(scene, pair))).collect();
+    Verdict {
+        lead: format!("Of {} graphs, none beats these in both error and time: {}.", report.graphs.len(), fronts.join("; ")),
+        sentences,
+    }
 }
 
 /// Who reaches the same error sooner.
@@ -210,6 +233,17 @@ mod tests {
         );
         assert_eq!(lead(&[(3.0, Better::Other)]), "3.");
         assert_eq!(lead(&[]), "Nothing was measured.");
+    }
+
+    #[test]
+    fn many_graphs_have_one_lead() {
+        let mut report = report(&[(2.0, Better::Other)]);
+        let graph = |name: &str| GraphFacts { name: name.into(), ..GraphFacts::default() };
+        report.graphs = ["a", "b", "c", "d", "e"].map(graph).to_vec();
+        let found = of(&report);
+        assert_eq!((found.len(), found[0].sentences.len()), (1, 1));
+        assert_eq!(found[0].lead, "Of 5 graphs, none beats these in both error and time: `a`, `b` on scene0.");
+        assert_eq!(found[0].sentences[0].text, "scene0: 2");
     }
 
     #[test]

@@ -51,7 +51,7 @@ function errorAgainstTime(element, points, names, reached) {
   const times = usable.map((p) => p.time), x = logAxis(times.length > 1 && Math.max(...times) > Math.min(...times) ? times : times.flatMap((t) => [t / 2, t * 2]), names.x, across(element));
   const y = logAxis(usable.flatMap((p) => [low(p), high(p)]), names.y);
   const series = [...new Map(usable.map((p) => [p.graph, usable.filter((q) => q.graph === p.graph)])).values()];
-  const guides = series.flatMap((s) => slope(s[0], x.domain, s[0].graph));
+  const guides = series.length > MOST_NAMES ? [] : series.flatMap((s) => slope(s[0], x.domain, s[0].graph));
   const lines = series.filter((s) => s.length > 1).flat(), single = usable.filter((p) => !lines.includes(p));
   show(element, Plot.plot(base(element, {
     x, y,
