@@ -34,6 +34,7 @@ impl Failure {
     }
 
     /// What is wrong, in plain words.
+    #[cfg(feature = "viewer")]
     pub fn words(&self) -> String {
         match self {
             Self::Failed(error) | Self::Temporary(error) => chain(error.as_ref()),
