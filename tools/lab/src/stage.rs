@@ -38,13 +38,13 @@ pub fn registry_keeping(scene: &Scene, features: &Features, folders: &[PathBuf])
 /// The module in which resampling tells what it does, and the one that listens.
 const WITNESS: [&str; 2] = ["restir/witness", "restir/witness_on"];
 
-/// As [`registry`], but passes that resample write down what they do: each has one more output, `testimony`.
-pub fn witnessing(scene: &Scene, folders: &[PathBuf]) -> Result<Registry, StageError> {
+/// As [`registry_keeping`], but passes that resample write down what they do: each has one more output, `testimony`.
+pub fn witnessing(scene: &Scene, features: &Features, folders: &[PathBuf]) -> Result<Registry, StageError> {
     let mut library = library(folders)?;
     let [silent, listening] = WITNESS;
     let text = library.text(listening).unwrap_or_default().to_owned();
     library.insert(silent, text, format!("built-in:{listening}.wgsl"));
-    Ok(aquifer_passes::registry(library, Some(scene))?)
+    Ok(aquifer_passes::registry_keeping(library, scene, features)?)
 }
 
 #[cfg(test)]

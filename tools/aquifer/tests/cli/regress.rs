@@ -68,10 +68,7 @@ fn bugs_of_spatial_reuse_are_found() {
     let joined = "inputs[count] = input_of(other, NOW, HUGE);\n        count += 1u;";
     let by_sample = "if (current[other].weight.value <= 0.0) { continue; }\n        ";
     let found = "return select(NOWHERE, index, verdict == LIKE);";
-    let bugs = [
-        ("pass/spatial", joined, format!("{by_sample}{joined}")),
-        ("restir/neighbour", found, "return NOWHERE;".to_owned()),
-    ];
+    let bugs = [("pass/spatial", joined, format!("{by_sample}{joined}")), ("restir/neighbour", found, "return NOWHERE;".to_owned())];
     for (module, right, wrong) in bugs {
         let mine = tempfile::tempdir().unwrap();
         let shaders = planted(mine.path(), module, right, &wrong);

@@ -5,10 +5,10 @@ use crate::{Opening, Recipe, opening::LoadGraph};
 use aquifer_graph::{Faults, Graph, PlanError, Source};
 use aquifer_lab::{
     capture::{Capture, running_means},
-    stage::StageError,
+    stage::{self, StageError},
 };
 use aquifer_render::{Context, Registry, Renderer, RendererOptions, SceneGlobals, View};
-use aquifer_scene::Scene;
+use aquifer_scene::{Features, Scene};
 use std::{
     path::PathBuf,
     sync::{Arc, OnceLock},
@@ -19,6 +19,8 @@ use std::{
 pub struct Workshop {
     pub context: Context,
     pub scene: Arc<Scene>,
+    /// The scene's, and a camera that moves: people move it.
+    pub features: Features,
     pub registry: Arc<Registry>,
     /// [`Workshop::registry`] with witnesses, once it was needed.
     pub witnessing: Arc<OnceLock<Arc<Registry>>>,
@@ -94,9 +96,10 @@ impl Workshop {
     /// # Errors
     /// Words, where there is no device or a folder of shaders cannot be read.
     pub fn open(opening: &Opening, scene: Arc<Scene>, context: Context) -> Result<Self, String> {
-        let registry = Arc::new(aquifer_lab::stage::registry(Some(&scene), &opening.shaders).map_err(|error| error.to_string())?);
+        let features = Features { moving_camera: true, ..Features::of(&scene) };
+        let registry = Arc::new(stage::registry_keeping(&scene, &features, &opening.shaders).map_err(|error| error.to_string())?);
         let (load, shaders) = (opening.load_graph.clone(), opening.shaders.clone());
-        Ok(Self { context, scene, registry, witnessing: Arc::default(), shaders, load, seed: opening.seed })
+        Ok(Self { context, scene, features, registry, witnessing: Arc::default(), shaders, load, seed: opening.seed })
     }
 
     /// Reads the shaders anew.
@@ -104,7 +107,7 @@ impl Workshop {
     /// # Errors
     /// Words; everything then stays as it was.
     pub fn reload(&mut self) -> Result<(), String> {
-        self.registry = Arc::new(aquifer_lab::stage::registry(Some(&self.scene), &self.shaders).map_err(|error| error.to_string())?);
+        self.registry = Arc::new(stage::registry_keeping(&self.scene, &self.features, &self.shaders).map_err(|error| error.to_string())?);
         self.witnessing = Arc::default();
         Ok(())
     }
@@ -117,7 +120,7 @@ impl Workshop {
         if let Some(known) = self.witnessing.get() {
             return Ok(known.clone());
         }
-        let made = Arc::new(aquifer_lab::stage::witnessing(&self.scene, &self.shaders)?);
+        let made = Arc::new(stage::witnessing(&self.scene, &self.features, &self.shaders)?);
         Ok(self.witnessing.get_or_init(|| made).clone())
     }
 
@@ -138,7 +141,7 @@ impl Workshop {
         let capture = Capture::of(&running);
         let plan =
             running.plan(&*registry, &self.kept(&running, &registry, &capture, order).iter().map(String::as_str).collect::<Vec<_>>())?;
-        let globals = SceneGlobals::new(&self.context, self.scene.clone(), View::default())?;
+        let globals = SceneGlobals::keeping(&self.context, self.scene.clone(), View::default(), &self.features)?;
         let options = RendererOptions { size: order.size, seed: self.seed, ..RendererOptions::default() };
         let mut renderer = Renderer::new(&self.context, &registry, plan, Box::new(globals), options)?;
         // Drivers compile in the first frame, and the first is not timed.
