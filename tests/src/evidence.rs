@@ -5,7 +5,7 @@ use aquifer_render::Context;
 use serde_json::{Map, Value, json};
 use std::{fs, path::PathBuf};
 
-/// A file of rows, written anew after each.
+/// A file of rows, a line each, written anew after each.
 pub struct Evidence {
     path: PathBuf,
     about: Map<String, Value>,
@@ -23,7 +23,12 @@ impl Evidence {
 
     /// Is there a row of this key?
     pub fn has(&self, key: &Value) -> bool {
-        self.rows.iter().any(|row| key.as_object().is_some_and(|key| key.iter().all(|(name, value)| row[name] == *value)))
+        self.place(key).is_some()
+    }
+
+    fn place(&self, key: &Value) -> Option<usize> {
+        let key = key.as_object()?;
+        self.rows.iter().position(|row| key.iter().all(|(name, value)| row[name] == *value))
     }
 
     /// The rows so far that were made with this commit.
@@ -36,16 +41,15 @@ impl Evidence {
     /// # Panics
     /// When the file cannot be written, or `key` or `found` is no object.
     pub fn put(&mut self, key: Value, found: Value) {
-        let key = object(key);
-        let same = |row: &Value| key.iter().all(|(name, value)| row[name] == *value);
-        let place = self.rows.iter().position(same);
-        let row = Value::Object(key.into_iter().chain(object(found)).chain(self.about.clone()).collect());
+        let place = self.place(&key);
+        let row = Value::Object(object(key).into_iter().chain(object(found)).chain(self.about.clone()).collect());
         match place {
             Some(at) => self.rows[at] = row,
             None => self.rows.push(row),
         }
-        let text = serde_json::to_string_pretty(&json!({ "rows": self.rows })).expect("plain data");
-        fs::write(&self.path, text + "\n").unwrap_or_else(|error| panic!("{}: {error}", self.path.display()));
+        let rows: Vec<String> = self.rows.iter().map(Value::to_string).collect();
+        let text = format!("{{\"rows\": [\n{}\n]}}\n", rows.join(",\n"));
+        fs::write(&self.path, text).unwrap_or_else(|error| panic!("{}: {error}", self.path.display()));
     }
 }
 

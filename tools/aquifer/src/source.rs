@@ -3,7 +3,7 @@
 use crate::{failure::Failure, ui::Ui, value};
 use aquifer_graph::{Document, Faults, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
 use aquifer_lab::{bench::auto, stage};
-use aquifer_render::{Context, Registry};
+use aquifer_render::{Context, ContextOptions, Registry};
 use aquifer_scene::{Environment, Features, Scene};
 use aquifer_scenes::Generator;
 use std::{
@@ -46,6 +46,21 @@ pub struct SceneArgs {
     /// Light from an equirectangular .exr or .hdr file, in place of the scene's own environment
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
+}
+
+/// The device.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct AdapterArgs {
+    /// The graphics adapter whose name contains this (see `aquifer adapters`)
+    #[arg(long = "adapter", value_name = "NAME")]
+    pub name: Option<String>,
+}
+
+impl AdapterArgs {
+    /// Opens it.
+    pub fn open(&self) -> Result<Context, Failure> {
+        Ok(Context::new(&ContextOptions { adapter: self.name.clone(), ..ContextOptions::default() })?)
+    }
 }
 
 impl GraphArgs {

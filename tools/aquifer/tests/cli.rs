@@ -4,6 +4,8 @@
 mod compare;
 #[path = "cli/explain.rs"]
 mod explain;
+#[path = "cli/films.rs"]
+mod films;
 #[path = "cli/graphs.rs"]
 mod graphs;
 #[path = "cli/images.rs"]

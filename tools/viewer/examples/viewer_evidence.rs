@@ -8,14 +8,19 @@
 //! Memory is that of the process, once a minute: first without switching, then while another graph is taken every few pictures. Software
 //! adapters may lose some with every dispatch; what switching costs is the difference between the two slopes, for one frame rendered.
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/common/board.rs"]
+mod board;
+#[path = "../tests/common/opening.rs"]
+mod opening;
+#[path = "../tests/common/waiting.rs"]
+mod waiting;
 
 use aquifer_viewer::{
     Recipe,
     session::{Board, Choice, Message, Session},
 };
-use common::{opening, wait};
+use board::wait;
+use opening::opening;
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 

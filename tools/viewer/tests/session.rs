@@ -1,12 +1,21 @@
 //! A session without a window.
 
-mod common;
+#[path = "common/adapter.rs"]
+mod adapter;
+#[path = "common/board.rs"]
+mod board;
+#[path = "common/opening.rs"]
+mod opening;
+#[path = "common/waiting.rs"]
+mod waiting;
 
+use adapter::has_adapter;
 use aquifer_viewer::{
     Recipe,
     session::{Camera, LEAST, Message, Session, Watch},
 };
-use common::{has_adapter, opening, wait};
+use board::wait;
+use opening::opening;
 
 #[test]
 fn two_graphs_spend_the_same_time_and_switch_while_they_run() {

@@ -1,15 +1,21 @@
 //! The window without a display: what people see and what keys and mouse do, by egui_kittest, drawn by wgpu.
 
-mod common;
+#[path = "common/adapter.rs"]
+mod adapter;
+#[path = "common/opening.rs"]
+mod opening;
 #[path = "common/screen.rs"]
 mod screen;
+#[path = "common/waiting.rs"]
+mod waiting;
 
+use adapter::has_adapter;
 use aquifer_graph::{Document, FsFiles, Graph, Value};
 use aquifer_viewer::{session::Board, testimony::lines, window::Viewer};
-use common::{LONG, has_adapter, opening};
 use eframe::egui;
 use egui_kittest::{Harness, kittest::Queryable as _};
 use image::RgbaImage;
+use opening::opening;
 use screen::Screen;
 use std::{
     path::Path,
@@ -31,16 +37,14 @@ fn window(graphs: &[&str]) -> Option<Harness<'static, Viewer>> {
 
 /// Steps until the board is as wanted.
 fn until(harness: &mut Harness<'_, Viewer>, what: &str, wanted: impl Fn(&Board) -> bool) {
-    let end = Instant::now() + LONG;
-    loop {
+    waiting::until(what, || {
         harness.step();
         let board = harness.state().board();
         if wanted(board) {
-            return;
+            return Ok(());
         }
-        assert!(Instant::now() < end, "{what}: still waiting; {:?}", board.sides.iter().map(|side| &side.fault).collect::<Vec<_>>());
-        std::thread::sleep(Duration::from_millis(10));
-    }
+        Err(format!("faults {:?}", board.sides.iter().map(|side| &side.fault).collect::<Vec<_>>()))
+    });
 }
 
 fn pictures(board: &Board) -> bool {

@@ -7,7 +7,7 @@ mod words;
 use crate::{
     cli::VERSION,
     failure::Failure,
-    source::{SceneArgs, ShaderArgs, cache_folder, files, text_of},
+    source::{AdapterArgs, SceneArgs, ShaderArgs, cache_folder, files, text_of},
     ui::Ui,
     value,
     watch::Watch,
@@ -24,7 +24,7 @@ use aquifer_lab::{
     },
     page,
 };
-use aquifer_render::{Clock, Context, ContextOptions};
+use aquifer_render::{Clock, Context};
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -126,9 +126,8 @@ pub struct Args {
     /// Folder where references are kept [default: aquifer in the user's cache folder]
     #[arg(long, value_name = "DIR", help_heading = "References")]
     cache: Option<PathBuf>,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Folder of the report; what it holds of the same comparison is gone on with
     #[arg(short, long, value_name = "DIR", default_value = "out/compare")]
     output: PathBuf,
@@ -163,7 +162,7 @@ fn write_json(path: &Path, report: &Report) -> Result<(), Failure> {
 impl Args {
     /// Measures these graphs on these scenes.
     fn compare(&self, entrants: &[Entrant], scenes: &[String], ui: &Ui) -> Result<Report, Failure> {
-        let context = Context::new(&ContextOptions { adapter: self.adapter.clone(), ..ContextOptions::default() })?;
+        let context = self.adapter.open()?;
         let mut watch = Watch::new(ui);
         let mut report = Report { schema: SCHEMA, protocol: self.protocol(), ..Report::default() };
         let mut clock = Clock::Wall;

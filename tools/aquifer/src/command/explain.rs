@@ -2,12 +2,11 @@
 
 use crate::{
     failure::Failure,
-    source::{GraphArgs, SceneArgs},
+    source::{AdapterArgs, GraphArgs, SceneArgs},
     ui::Ui,
     value,
 };
 use aquifer_lab::explain::{Explanation, Missing, Request, Ways, explain};
-use aquifer_render::{Context, ContextOptions};
 use std::{collections::BTreeMap, sync::Arc};
 
 #[derive(Debug, clap::Args)]
@@ -22,9 +21,8 @@ pub struct Args {
     /// Frames that are timed each way, in turns; 0 measures no time
     #[arg(long, value_name = "N", default_value_t = 15)]
     rounds: u32,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print it as JSON, every piece of every shader included
     #[arg(long)]
     json: bool,
@@ -33,7 +31,7 @@ pub struct Args {
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let scene = Arc::new(args.scene.load(ui)?);
     let document = args.graph.document()?;
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let context = args.adapter.open()?;
     let request = Request {
         context: &context,
         scene: &scene,

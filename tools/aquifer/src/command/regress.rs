@@ -4,7 +4,7 @@ mod folder;
 
 use crate::{
     failure::Failure,
-    source::{GraphArgs, SceneArgs, ShaderArgs},
+    source::{AdapterArgs, GraphArgs, SceneArgs, ShaderArgs},
     ui::Ui,
     value,
 };
@@ -13,7 +13,7 @@ use aquifer_lab::{
     compare::subject::Stage,
     regress::{Picture, Shown, Verdict, compare, picture, write},
 };
-use aquifer_render::{Context, ContextOptions};
+use aquifer_render::Context;
 use folder::{Folder, stem};
 use std::{
     path::{Path, PathBuf},
@@ -45,9 +45,8 @@ pub struct Args {
     size: [u32; 2],
     #[command(flatten)]
     shaders: ShaderArgs,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Where got, want, their difference and a page of them go when they differ
     #[arg(short, long, value_name = "DIR", default_value = "out/regress")]
     output: PathBuf,
@@ -69,7 +68,7 @@ impl Case {
 pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     let mut folder = Folder::open(&args.golden)?;
     let names = if args.graphs.is_empty() { folder.names()? } else { args.graphs.clone() };
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let context = args.adapter.open()?;
     let mut cases = Vec::new();
     for name in &names {
         let case = args.case(name, &context, &folder, ui)?;

@@ -10,7 +10,7 @@ use crate::{
     failure::Failure,
     interrupt,
     progress::Goal,
-    source::{GraphArgs, SceneArgs},
+    source::{AdapterArgs, GraphArgs, SceneArgs},
     ui::Ui,
     value::{self, Frames},
 };
@@ -59,9 +59,8 @@ pub struct Args {
     /// Seed of all random numbers: other seeds are other samples
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Where to write: .exr (radiance, its variance, what made it) or .png (the picture); repeatable
     #[arg(short, long = "output", value_name = "FILE", value_parser = value::image, required_unless_present = "json")]
     outputs: Vec<PathBuf>,

@@ -3,7 +3,7 @@
 use crate::{
     cli::VERSION,
     failure::Failure,
-    source::{GraphArgs, ShaderArgs, load_scene},
+    source::{AdapterArgs, GraphArgs, ShaderArgs, load_scene},
     ui::Ui,
 };
 use aquifer_graph::{Document, Transport};
@@ -11,7 +11,7 @@ use aquifer_lab::{
     atomic,
     stress::{self, Bench, Case, Effort, Pictures, Row},
 };
-use aquifer_render::{Context, ContextOptions};
+use aquifer_render::Context;
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -42,9 +42,8 @@ pub struct Args {
     truth_samples: u32,
     #[command(flatten)]
     shaders: ShaderArgs,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print the rows as JSON
     #[arg(long)]
     json: bool,
@@ -63,7 +62,7 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
         atomic::check_writable(&folder.join("stress.html"))?;
     }
     let graphs = args.documents()?;
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let context = args.adapter.open()?;
     if let Some(frames) = args.long {
         return long(&graphs, frames, &context, args.json, ui);
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     failure::Failure,
-    source::{SceneArgs, ShaderArgs, cache_folder, load_graph, load_scene},
+    source::{AdapterArgs, SceneArgs, ShaderArgs, cache_folder, load_graph, load_scene},
     value,
 };
 use aquifer_graph::Transport;
@@ -33,9 +33,8 @@ pub struct Args {
     /// Seed of all random numbers
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Folder where references are kept [default: aquifer in the user's cache folder]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
@@ -57,7 +56,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         scene: args.scene.scene.clone(),
         options,
         shaders: args.shaders.folders,
-        adapter: args.adapter,
+        adapter: args.adapter.name,
         camera: args.camera,
         size: args.size,
         seed: args.seed,

@@ -1,26 +1,16 @@
 //! `aquifer merge` and `diff`
 
-use crate::run::{aquifer, names};
-use aquifer_lab::film::{Facts, Film, GraphText, Runs};
+use crate::{
+    films::facts,
+    run::{aquifer, names},
+};
+use aquifer_lab::film::{Film, Runs};
 use std::path::Path;
 
 /// A flat film of `frames` frames.
 fn film(value: f32, first_frame: u64, frames: u32) -> Film {
-    let facts = Facts {
-        samples_per_pixel: frames,
-        render_seconds: 1.0,
-        graph: GraphText::new("graph"),
-        scene: "cornell".into(),
-        environment: None,
-        camera: "main".into(),
-        animation_time: 0.0,
-        transport: "direct".into(),
-        runs: Runs::one(0, first_frame, u64::from(frames)),
-        adapter: "none".into(),
-        version: "0".into(),
-    };
     let variance = Some(vec![[1e-6; 3]; 64]);
-    Film { variance, facts: Some(facts), ..Film::new([8, 8], vec![[value; 3]; 64]).expect("64 pixels") }
+    Film { variance, facts: Some(facts(first_frame, frames)), ..Film::new([8, 8], vec![[value; 3]; 64]).expect("64 pixels") }
 }
 
 fn write(folder: &Path, name: &str, film: &Film) -> String {

@@ -1,7 +1,21 @@
 //! `aquifer compare`: growing budgets, animations, and what biased switches do, on the renderer.
 
-use crate::{compare::report, run::aquifer};
+use crate::{
+    compare::report,
+    run::{Run, aquifer},
+};
 use serde_json::Value;
+
+/// Compares light sampling with reuse at small cost, and reads the report.
+fn compared(protocol: &str) -> (tempfile::TempDir, Run, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let graphs = ["compare", "light_sampling", "restir_di_unbiased", "-o", out, "--cache", out];
+    let run = aquifer(&graphs.into_iter().chain(protocol.split_whitespace()).collect::<Vec<_>>());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let report = report(folder.path());
+    (folder, run, report)
+}
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().expect("a list").iter().map(|value| value.as_f64().expect("a number")).collect()
@@ -9,34 +23,8 @@ fn numbers(value: &Value) -> Vec<f64> {
 
 #[test]
 fn growing_budgets_give_curves_and_the_time_of_equal_error() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_str().unwrap();
-    let args = [
-        "compare",
-        "light_sampling",
-        "restir_di_unbiased",
-        "--scene",
-        "cornell",
-        "--size",
-        "32x18",
-        "--protocol",
-        "accumulate",
-        "--frames",
-        "16",
-        "--warm-up",
-        "4",
-        "--seeds",
-        "5",
-        "--reference-samples",
-        "1024",
-        "-o",
-        out,
-        "--cache",
-        out,
-    ];
-    let run = aquifer(&args);
-    assert_eq!(run.code, 0, "{}", run.err);
-    let report = report(folder.path());
+    let protocol = "--protocol accumulate --frames 16 --warm-up 4 --seeds 5";
+    let (folder, run, report) = compared(&format!("--scene cornell --size 32x18 --reference-samples 1024 {protocol}"));
     let scene = &report["scenes"][0];
     for cell in scene["cells"].as_array().unwrap() {
         let curve = cell["curve"].as_array().unwrap();
@@ -65,34 +53,8 @@ fn growing_budgets_give_curves_and_the_time_of_equal_error() {
 
 #[test]
 fn every_frame_of_an_animation_has_its_own_truth() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_str().unwrap();
-    let args = [
-        "compare",
-        "light_sampling",
-        "restir_di_unbiased",
-        "--scene",
-        "animated",
-        "--size",
-        "16x9",
-        "--protocol",
-        "trace",
-        "--frames",
-        "3",
-        "--step",
-        "0.25",
-        "--seeds",
-        "3",
-        "--reference-samples",
-        "256",
-        "-o",
-        out,
-        "--cache",
-        out,
-    ];
-    let run = aquifer(&args);
-    assert_eq!(run.code, 0, "{}", run.err);
-    let report = report(folder.path());
+    let protocol = "--protocol trace --frames 3 --step 0.25 --seeds 3";
+    let (folder, _, report) = compared(&format!("--scene animated --size 16x9 --reference-samples 256 {protocol}"));
     let cells = report["scenes"][0]["cells"].as_array().unwrap();
     let restir = cells.iter().find(|cell| cell["graph"] == 1).unwrap();
     let curve = restir["curve"].as_array().unwrap();

@@ -1,10 +1,10 @@
 //! Killed at any moment, on a full disk, without memory: nothing half-written is ever taken for whole.
 
-use crate::run::{aquifer, names};
-use aquifer_lab::{
-    film::{Facts, Film, GraphText, Runs},
-    stats::rng::SplitMix,
+use crate::{
+    films::facts,
+    run::{aquifer, names},
 };
+use aquifer_lab::{film::Film, stats::rng::SplitMix};
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -17,20 +17,7 @@ const SIZE: [u32; 2] = [320, 180];
 fn noise(frame: u64) -> Film {
     let mut rng = SplitMix::new(frame);
     let color = (0..SIZE[0] * SIZE[1]).map(|_| [0, 1, 2].map(|_| rng.normal().abs() as f32)).collect();
-    let facts = Facts {
-        samples_per_pixel: 1,
-        render_seconds: 1.0,
-        graph: GraphText::new("graph"),
-        scene: "cornell".into(),
-        environment: None,
-        camera: "main".into(),
-        animation_time: 0.0,
-        transport: "direct".into(),
-        runs: Runs::one(0, frame, 1),
-        adapter: "none".into(),
-        version: "0".into(),
-    };
-    Film { facts: Some(facts), ..Film::new(SIZE, color).expect("a colour a pixel") }
+    Film { facts: Some(facts(frame, 1)), ..Film::new(SIZE, color).expect("a colour a pixel") }
 }
 
 fn merge(folder: &Path) -> Command {

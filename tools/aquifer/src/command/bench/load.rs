@@ -1,8 +1,11 @@
 //! `aquifer bench load`
 
-use crate::{failure::Failure, source::load_scene, ui::Ui};
+use crate::{
+    failure::Failure,
+    source::{AdapterArgs, load_scene},
+    ui::Ui,
+};
 use aquifer_lab::bench::loading::{LoadReport, measure};
-use aquifer_render::{Context, ContextOptions};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -12,16 +15,15 @@ pub struct Args {
     /// Rounds in which every step has its turn
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print as JSON
     #[arg(long)]
     json: bool,
 }
 
 pub fn run(args: &Args, ui: &Ui) -> Result<(), Failure> {
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let context = args.adapter.open()?;
     let report = measure(&context, args.rounds, || load_scene(&args.scene, None))?;
     if args.json { ui.json(&report) } else { ui.print(&table(&args.scene, &report)) }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     failure::Failure,
-    source::{GraphArgs, SceneArgs, ShaderArgs},
+    source::{AdapterArgs, GraphArgs, SceneArgs, ShaderArgs},
     ui::Ui,
     value,
 };
@@ -11,7 +11,6 @@ use aquifer_lab::{
     bench::passes::{PassesReport, measure},
     compare::subject::Stage,
 };
-use aquifer_render::{Context, ContextOptions};
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
@@ -35,9 +34,8 @@ pub struct Args {
     /// Rounds in which every graph has its turn, a frame after its warm-up
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print as JSON
     #[arg(long)]
     json: bool,
@@ -45,7 +43,7 @@ pub struct Args {
 
 pub fn run(args: &Args, ui: &Ui) -> Result<(), Failure> {
     let scene = Arc::new(args.scene.load(ui)?);
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let context = args.adapter.open()?;
     let graphs = args.graphs.iter().map(|graph| {
         let source =
             GraphArgs { graph: graph.clone(), settings: args.settings.clone(), transport: args.transport, shaders: args.shaders.clone() };

@@ -2,12 +2,11 @@
 
 use crate::{
     failure::Failure,
-    source::{SceneArgs, ShaderArgs},
+    source::{AdapterArgs, SceneArgs, ShaderArgs},
     ui::Ui,
     value,
 };
 use aquifer_lab::bench::tracing::{KindReport, TraceOptions, TraceReport, measure};
-use aquifer_render::{Context, ContextOptions};
 use std::sync::Arc;
 
 #[derive(Debug, clap::Args)]
@@ -28,9 +27,8 @@ pub struct Args {
     /// Times that the device traces all rays in a round; more for fast adapters, where submitting would count
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     repeats: u32,
-    /// The graphics adapter whose name contains this (see `aquifer adapters`)
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    adapter: AdapterArgs,
     /// Print as JSON
     #[arg(long)]
     json: bool,
@@ -38,7 +36,7 @@ pub struct Args {
 
 pub fn run(args: &Args, ui: &Ui) -> Result<(), Failure> {
     let scene = Arc::new(args.scene.load(ui)?);
-    let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+    let context = args.adapter.open()?;
     let options = TraceOptions {
         tracers: args.tracers.clone(),
         size: args.size,

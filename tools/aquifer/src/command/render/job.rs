@@ -16,7 +16,7 @@ use aquifer_lab::{
     first_surface::FirstSurface,
     rays::RayCounters,
 };
-use aquifer_render::{Context, ContextOptions, Registry, Renderer, RendererOptions, SceneGlobals, View};
+use aquifer_render::{Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::{Camera, Scene};
 use std::{
     path::PathBuf,
@@ -54,7 +54,7 @@ impl<'a> Job<'a> {
         let scene = Arc::new(args.scene.load(ui)?);
         let (mut graph, mut registry) = args.graph.check(Some(&scene))?;
         let edits = edits(&graph);
-        let context = Context::new(&ContextOptions { adapter: args.adapter.clone(), ..ContextOptions::default() })?;
+        let context = args.adapter.open()?;
         let source = args.graph.choosing(&context, &scene)?;
         if !edits.is_empty() || source.settings != args.graph.settings {
             (graph, registry) = source.check_with(Some(&scene), edits)?;
