@@ -46,7 +46,7 @@ compare_aa)
     tools/evidence/compare_aa.sh target/debug/aquifer docs/evidence/compare_aa.json "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
 viewer)
-    cargo run --quiet --manifest-path tools/viewer/Cargo.toml --example viewer_evidence -- docs/evidence/viewer.json "$(git rev-parse HEAD)" "$(date -u +%F)" "${1:-30}"
+    cargo run --quiet -p aquifer-viewer --example viewer_evidence -- docs/evidence/viewer.json "$(git rev-parse HEAD)" "$(date -u +%F)" "${1:-30}"
     ;;
 restir_di | restir_gi)
     minutes=${1:-600}

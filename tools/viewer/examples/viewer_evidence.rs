@@ -2,7 +2,7 @@
 //! the machine to itself.
 //!
 //! ```text
-//! cargo run --manifest-path tools/viewer/Cargo.toml --example viewer_evidence -- FILE COMMIT DATE MINUTES
+//! cargo run -p aquifer-viewer --example viewer_evidence -- FILE COMMIT DATE MINUTES
 //! ```
 //!
 //! Memory is that of the process, once a minute: first without switching, then while another graph is taken every few pictures. Software

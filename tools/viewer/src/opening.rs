@@ -58,6 +58,8 @@ pub struct Opening {
     pub seed: u64,
     /// Where references are kept.
     pub cache: PathBuf,
+    /// Of the program, for the films it keeps.
+    pub version: String,
 }
 
 impl Recipe {

@@ -22,7 +22,7 @@ pub fn slot_key(slot: &str) -> String {
 /// A graph file that extends the recipe's and says what differs from it, and nothing else; to be put into `folder`.
 pub fn diff(recipe: &Recipe, graph: &Graph, written: &Graph, folder: &Path) -> String {
     let mut text = format!("extends = {}\n", quoted(&extended(&recipe.graph, folder)));
-    let title = recipe.settings.is_empty().then(|| graph.title().to_owned()).unwrap_or_else(|| format!("{}, changed", written.title()));
+    let title = if recipe.settings.is_empty() { graph.title().to_owned() } else { format!("{}, changed", written.title()) };
     let _ = writeln!(text, "title   = {}", quoted(&title));
     if graph.transport() != written.transport() {
         let _ = writeln!(text, "transport = {}", quoted(&graph.transport().to_string()));

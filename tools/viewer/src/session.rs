@@ -55,6 +55,8 @@ pub struct Board {
     pub extent: f32,
     /// Adapter that renders.
     pub adapter: String,
+    /// The environment over the scene's own, as films name it.
+    pub environment: Option<String>,
     /// What is rendered at the moment.
     pub moment: Option<Moment>,
     /// Every slot with all that can fill it.

@@ -61,6 +61,7 @@ pub struct Viewer {
     scene: String,
     options: Vec<String>,
     seed: u64,
+    version: String,
     /// What the user wants; the board follows.
     recipes: Vec<Recipe>,
     state: state::State,
@@ -71,8 +72,8 @@ pub struct Viewer {
 impl Viewer {
     /// Begins a session that wakes the window when there is something new.
     pub fn new(opening: Opening, context: &egui::Context) -> Self {
-        let (known_graphs, scene, options, seed) =
-            (opening.known_graphs.clone(), opening.scene.clone(), opening.options.clone(), opening.seed);
+        let (known_graphs, scene, options) = (opening.known_graphs.clone(), opening.scene.clone(), opening.options.clone());
+        let (seed, version) = (opening.seed, opening.version.clone());
         let recipes = opening.graphs.clone();
         let state = state::State { camera: opening.camera.clone(), ..state::State::new(recipes.len()) };
         let waker = context.clone();
@@ -85,6 +86,7 @@ impl Viewer {
             scene,
             options,
             seed,
+            version,
             recipes,
             state,
             images: images::Images::default(),

@@ -17,10 +17,7 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use image::RgbaImage;
 use opening::opening;
 use screen::Screen;
-use std::{
-    path::Path,
-    time::{Duration, Instant},
-};
+use std::{path::Path, time::Duration};
 
 const WINDOW: [f32; 2] = [1000.0, 640.0];
 

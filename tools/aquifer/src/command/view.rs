@@ -1,6 +1,7 @@
 //! `aquifer view [A [B]]`
 
 use crate::{
+    cli::VERSION,
     failure::Failure,
     source::{AdapterArgs, SceneArgs, ShaderArgs, cache_folder, load_graph, load_scene},
     value,
@@ -61,6 +62,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         size: args.size,
         seed: args.seed,
         cache: args.cache.unwrap_or_else(cache_folder),
+        version: VERSION.to_owned(),
         load_scene: Box::new(move || loaded(&args.scene).map_err(|failure| failure.words())),
     };
     aquifer_viewer::run(opening).map_err(|error| Failure::new(error.to_string()))

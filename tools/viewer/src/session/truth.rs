@@ -62,6 +62,7 @@ pub struct Wish {
     pub environment: Option<String>,
     pub shaders: Vec<PathBuf>,
     pub cache: PathBuf,
+    pub version: String,
 }
 
 /// Ends the making when it is dropped.
@@ -118,7 +119,7 @@ fn fulfil(workshop: &Workshop, wish: &Wish, stop: &AtomicBool, tell: &dyn Fn(New
         size: about.size,
         centred: false,
     };
-    let content = Content { scene: &scene, environment: wish.environment.as_deref(), camera: &about.camera };
+    let content = Content { scene: &scene, environment: wish.environment.as_deref(), camera: &about.camera, version: &wish.version };
     let mut tracer = Tracer::new(&stage, &(workshop.load)("path_tracer").map_err(CompareError::from)?, about.transport, about.time)?;
     let mut reference = Reference::open(&wish.cache, &stage, &tracer, &content, about.time, &mut Unwatched);
     let show = |reference: &Reference| {

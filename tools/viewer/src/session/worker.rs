@@ -46,6 +46,7 @@ struct Worker {
     outbox: Sender<Inbox>,
     workshop: Workshop,
     cache: PathBuf,
+    version: String,
     content: Content,
     environment: Option<String>,
     desks: Vec<Desk>,
@@ -109,6 +110,7 @@ impl Worker {
             board.waiting = None;
             board.cameras = scene.camera_names();
             (board.duration, board.extent) = (duration, extent);
+            board.environment.clone_from(&environment);
             board.adapter = workshop.context.adapter().name.clone();
             board.slots = workshop.registry.slots();
             board.defaults = workshop.registry.library().default_slots();
@@ -120,6 +122,7 @@ impl Worker {
             outbox,
             workshop,
             cache: opening.cache,
+            version: opening.version,
             content,
             environment,
             desks,

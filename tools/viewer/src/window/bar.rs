@@ -78,9 +78,9 @@ impl Viewer {
         }
         ui.selectable_value(&mut self.state.layout, Layout::Split, "Split").on_hover_text("Key 1: one picture, a slider between A and B");
         ui.selectable_value(&mut self.state.layout, Layout::Beside, "Side by side").on_hover_text("Key 2");
-        for side in 0..2 {
+        for (side, name) in SIDE_NAMES.iter().enumerate() {
             let single = self.state.layout == Layout::Single && self.state.front == side;
-            let words = format!("Only {}", SIDE_NAMES[side]);
+            let words = format!("Only {name}");
             if ui.selectable_label(single, words).on_hover_text("Key 3; space flips").clicked() {
                 (self.state.layout, self.state.front) = (Layout::Single, side);
             }

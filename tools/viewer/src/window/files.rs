@@ -47,8 +47,8 @@ impl Viewer {
         let mut open = self.state.files.open;
         egui::Window::new("Keep").open(&mut open).resizable(false).show(ui.ctx(), |ui| {
             ui.horizontal(|ui| {
-                for side in 0..self.recipes.len() {
-                    ui.selectable_value(&mut self.state.files.side, side, format!("of {}", SIDE_NAMES[side]));
+                for (side, name) in SIDE_NAMES.iter().enumerate().take(self.recipes.len()) {
+                    ui.selectable_value(&mut self.state.files.side, side, format!("of {name}"));
                 }
             });
             ui.horizontal(|ui| {
@@ -105,13 +105,13 @@ impl Viewer {
             render_seconds: picture.spent * 1e-3,
             graph: GraphText { text, hash: graph.digest() },
             scene: self.scene.clone(),
-            environment: None,
+            environment: self.board.environment.clone(),
             camera: picture.moment.name.clone().unwrap_or_else(|| "free".to_owned()),
             animation_time: picture.moment.time,
             transport: graph.transport().to_string(),
             runs: Runs::one(self.seed, u64::from(picture.first), u64::from(picture.frames)),
             adapter: self.board.adapter.clone(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: self.version.clone(),
         };
         let film = Film { facts: Some(facts), ..picture.film.clone() };
         film.write(Path::new(&path)).map_err(|error| error.to_string())?;

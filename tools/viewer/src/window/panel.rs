@@ -54,8 +54,8 @@ impl Viewer {
         });
         if self.recipes.len() > 1 && matches!(self.state.tab, Tab::Parameters | Tab::Graph) {
             ui.horizontal(|ui| {
-                for side in 0..2 {
-                    let words = egui::RichText::new(format!("of {}", SIDE_NAMES[side])).color(super::bar::readable(ui, side));
+                for (side, name) in SIDE_NAMES.iter().enumerate() {
+                    let words = egui::RichText::new(format!("of {name}")).color(super::bar::readable(ui, side));
                     ui.selectable_value(&mut self.state.front, side, words);
                 }
             });

@@ -25,5 +25,6 @@ pub fn opening(graphs: &[&str], scene: &'static str, shaders: Vec<PathBuf>) -> O
         size: aquifer_viewer::session::LEAST,
         seed: 0,
         cache: std::env::temp_dir().join("aquifer-viewer-tests"),
+        version: "test".to_owned(),
     }
 }

@@ -102,6 +102,7 @@ impl Worker {
                 environment: self.environment.clone(),
                 shaders: self.workshop.shaders.clone(),
                 cache: self.cache.clone(),
+                version: self.version.clone(),
             };
             truth::make(self.workshop.clone(), wish, self.outbox.clone())
         });
