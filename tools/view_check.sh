@@ -67,7 +67,9 @@ xdotool key space
 sleep 1
 shot b
 differ a b 20000
-xdotool key h mousedown 1 mousemove_relative --sync 120 30 mouseup 1
+xdotool key h
+# Slowly: press, move and release within one picture of the window are a click.
+xdotool mousedown 1 sleep 0.5 mousemove_relative --sync 60 15 sleep 0.5 mousemove_relative --sync 60 15 sleep 0.5 mouseup 1
 sleep 6
 shot orbited
 differ b orbited 20000

@@ -7,7 +7,7 @@ import package::restir::inputs::{previous_surface};
 import package::restir::neighbour::{LIKE, NOT_THERE, NOWHERE, Similarity, disk, on_film, unlike};
 import package::restir::witness::{tell_looked};
 import package::scene::geometry::{position_of};
-import package::surface::{SurfaceRecord};
+import package::surface::{SurfaceRecord, is_surface};
 
 struct Search {
     /// Further pixels that are tried where the first is not alike.
@@ -42,8 +42,10 @@ fn pixel_before(pixel: vec2<u32>, motion: vec2<f32>, record: SurfaceRecord, sear
             continue;
         }
         let index = index_of(vec2<u32>(there));
-        let verdict = unlike(record, distance, previous_surface[index], limits);
-        tell_looked(there, BEFORE, verdict);
+        let other = previous_surface[index];
+        let verdict = unlike(record, distance, other, limits);
+        // Where no history is wired its surfaces are zeros, and there is nothing to be told.
+        if (!is_surface(other) || other.distance > 0.0) { tell_looked(there, BEFORE, verdict); }
         if (verdict == LIKE) { return index; }
     }
     return NOWHERE;

@@ -163,6 +163,7 @@ fn the_inspector_shows_the_reservoirs_of_a_pixel_and_what_it_tried() {
         "{told:?}"
     );
     assert!((2..=7).contains(&told.len()), "the pixel itself and up to five neighbours, tried and carried: {told:?}");
+    assert!(told.iter().all(|line| !line.before), "no history is wired to spatial, so none was looked at: {told:?}");
     let kept: Vec<_> = told.iter().filter_map(|line| line.carried.filter(|carried| carried.kept)).collect();
     assert_eq!(kept.len(), 1, "{told:?}");
     // What was kept is what the reservoir holds: W = Σw / p̂.
