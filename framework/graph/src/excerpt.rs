@@ -61,6 +61,8 @@ impl<'a> View<'a> {
 fn window(line: &str, start: usize, len: usize) -> (String, usize, usize) {
     const WIDTH: usize = 110;
     let characters: Vec<char> = line.chars().map(visible).collect();
+    // What is wrong may be the end of the line, which the line here is without.
+    let start = start.min(characters.len());
     if characters.len() <= WIDTH {
         return (characters.iter().collect(), start, len);
     }
