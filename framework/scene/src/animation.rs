@@ -1,6 +1,6 @@
 //! Key frames to values (glTF 2.0, Appendix C).
 
-use crate::{Channel, Interpolation, Node, Scene, Track};
+use crate::{Channel, Interpolation, Node, Scene, Track, unit};
 use glam::{Quat, Vec3, Vec4};
 use std::ops::{Add, Mul};
 
@@ -101,7 +101,7 @@ fn rotation(values: &[Quat], key: Key, interpolation: Interpolation) -> Quat {
         values[base + i % 3].into()
     });
     let spline = hermite(&values, Key { before: 0, after: 1, ..key });
-    spline.try_normalize().map_or(Quat::from_vec4(values[1]), Quat::from_vec4)
+    unit::rotation(Quat::from_vec4(spline)).unwrap_or(Quat::from_vec4(values[1]))
 }
 
 /// `slerp` takes the shorter way round.

@@ -21,6 +21,7 @@ mod moment;
 mod scene;
 mod tlas;
 mod trace;
+mod unit;
 mod wide;
 
 pub use alias::{AliasEntry, AliasTable};

@@ -1,6 +1,6 @@
 //! Questions to meshes and materials, and the one way to reorder vertices.
 
-use crate::{Material, Mesh, TextureRef};
+use crate::{Material, Mesh, TextureRef, unit};
 use glam::Vec3;
 
 impl Mesh {
@@ -12,7 +12,7 @@ impl Mesh {
     /// Unit normal of the front side, in object space; +Z for a triangle without area.
     pub fn geometric_normal(&self, triangle: usize) -> Vec3 {
         let [a, b, c] = self.corners(triangle);
-        (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z)
+        unit::direction((b - a).cross(c - a)).unwrap_or(Vec3::Z)
     }
 
     /// New vertex `i` is old vertex `sources[i]`, in positions, texture coordinates and colours. Normals, tangents and triangles are

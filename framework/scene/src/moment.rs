@@ -1,6 +1,6 @@
 //! A scene at one time: animation applied, the hierarchy multiplied out, one camera chosen.
 
-use crate::{Camera, Instance, Moment, Node, PlacedLight, Scene, SceneError};
+use crate::{Camera, Instance, Moment, Node, PlacedLight, Scene, SceneError, unit};
 use glam::{Affine3A, DAffine3, DVec3, Mat3A, Vec3, Vec3A};
 
 /// Metres between the places where a moment's origin may lie: floats tell 3·10⁻⁵ m apart half as far away.
@@ -83,7 +83,7 @@ impl Scene {
             node.light.map(|light| PlacedLight {
                 light,
                 position: world[index].translation.into(),
-                direction: Vec3::from(-world[index].matrix3.z_axis).try_normalize().unwrap_or(Vec3::NEG_Z),
+                direction: unit::direction((-world[index].matrix3.z_axis).into()).unwrap_or(Vec3::NEG_Z),
             })
         };
         self.nodes.iter().enumerate().filter_map(place).collect()

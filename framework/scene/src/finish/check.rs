@@ -1,6 +1,6 @@
 //! Every index is in range, every array as long as its partner, every number finite.
 
-use crate::{Alpha, Channel, Environment, Image, Lens, Material, Mesh, Node, PunctualLight, PunctualShape, Scene, SceneError, Track};
+use crate::{Alpha, Channel, Environment, Image, Lens, Material, Mesh, Node, PunctualLight, PunctualShape, Scene, SceneError, Track, unit};
 use glam::{Mat3, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -41,14 +41,14 @@ pub(super) fn normalise(scene: &mut Scene) {
         }
     }
     for node in &mut scene.nodes {
-        node.rotation = node.rotation.normalize();
+        node.rotation = unit::rotation(node.rotation).unwrap_or_default();
     }
     for channel in &mut scene.animation {
         let values_a_key = Channel::values_a_key(channel.interpolation);
         let Track::Rotation(values) = &mut channel.track else { continue };
         // The tangents of splines are no rotations.
         for value in values.iter_mut().skip(values_a_key / 2).step_by(values_a_key) {
-            *value = value.normalize();
+            *value = unit::rotation(*value).unwrap_or_default();
         }
     }
 }
@@ -154,7 +154,7 @@ fn check_node(index: usize, node: &Node, scene: &Scene) -> Result<(), SceneError
     }
     finite(&at, "translation", node.translation.is_finite())?;
     finite(&at, "scale", node.scale.is_finite())?;
-    finite(&at, "rotation", node.rotation.is_finite() && node.rotation.length_squared() > 0.0)?;
+    finite(&at, "rotation", unit::rotation(node.rotation).is_some())?;
     let references =
         [("mesh", node.mesh, scene.meshes.len()), ("camera", node.camera, scene.cameras.len()), ("light", node.light, scene.lights.len())];
     for (field, reference, count) in references {
@@ -210,7 +210,7 @@ fn check_channel(at: &str, channel: &Channel, nodes: usize) -> Result<(), SceneE
         Track::Translation(values) | Track::Scale(values) => values.iter().all(|value| value.is_finite()),
         Track::Rotation(values) => {
             let keys = values.iter().skip(values_a_key / 2).step_by(values_a_key);
-            values.iter().all(|value| value.is_finite()) && keys.into_iter().all(|value| value.length_squared() > 0.0)
+            values.iter().all(|value| value.is_finite()) && keys.into_iter().all(|&value| unit::rotation(value).is_some())
         }
     };
     finite(at, "track", good)

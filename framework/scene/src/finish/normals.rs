@@ -1,6 +1,6 @@
 //! Shading normals for every vertex.
 
-use crate::Mesh;
+use crate::{Mesh, unit};
 use glam::Vec3;
 
 /// Gives every triangle three vertices of its own with its geometric normal. glTF 2.0, 3.7.2.1: without normals, flat ones must be
@@ -19,8 +19,8 @@ pub(super) fn flatten(mesh: &mut Mesh) {
 pub(super) fn repair(mesh: &mut Mesh) -> usize {
     let mut broken = vec![false; mesh.normals.len()];
     for (normal, broken) in mesh.normals.iter_mut().zip(&mut broken) {
-        *broken = normal.try_normalize().is_none();
-        *normal = normal.normalize_or(Vec3::Z);
+        let direction = unit::direction(*normal);
+        (*broken, *normal) = (direction.is_none(), direction.unwrap_or(Vec3::Z));
     }
     if !broken.contains(&true) {
         return 0;

@@ -1,6 +1,6 @@
 //! Tangents where a normal map needs them.
 
-use crate::{Material, Mesh};
+use crate::{Material, Mesh, unit};
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec3, Vec4};
 use std::collections::HashMap;
@@ -126,7 +126,7 @@ fn repair(mesh: &mut Mesh) -> usize {
 
 /// A unit direction and a sign, or nothing.
 fn usable(tangent: Vec4) -> Option<Vec4> {
-    let direction = tangent.truncate().try_normalize()?;
+    let direction = unit::direction(tangent.truncate())?;
     (tangent.w.is_finite() && tangent.w != 0.0).then(|| direction.extend(tangent.w.signum()))
 }
 

@@ -1,7 +1,7 @@
 //! Animation channels of nodes.
 
 use super::{LoadError, Loader, MAX_KEYS, accessor::Wanted, limits::spend, nodes::NodeMap};
-use crate::{Channel, Interpolation, Track};
+use crate::{Channel, Interpolation, Track, unit};
 use glam::{Quat, Vec3};
 use gltf::json::{
     accessor::Type,
@@ -73,7 +73,7 @@ impl Loader<'_> {
         }
         if let Track::Rotation(values) = &track {
             let values_a_key = Channel::values_a_key(interpolation);
-            if values.iter().skip(values_a_key / 2).step_by(values_a_key).any(|value| value.length_squared() == 0.0) {
+            if values.iter().skip(values_a_key / 2).step_by(values_a_key).any(|&value| unit::rotation(value).is_none()) {
                 return Err(LoadError::invalid(pointer, "a rotation has no length"));
             }
         }

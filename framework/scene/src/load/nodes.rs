@@ -1,7 +1,7 @@
 //! The hierarchy with its cameras and punctual lights.
 
 use super::{LoadError, Loader, named};
-use crate::{Lens, Node, PunctualLight, PunctualShape};
+use crate::{Lens, Node, PunctualLight, PunctualShape, unit};
 use glam::{Mat4, Quat, Vec3};
 use gltf::json::{
     camera::Camera,
@@ -75,14 +75,15 @@ impl Loader<'_> {
     fn transform(&mut self, index: usize, json: &scene::Node, name: &str) -> Result<(Vec3, Quat, Vec3), LoadError> {
         let Some(matrix) = json.matrix else {
             let rotation = json.rotation.map_or(Quat::IDENTITY, |rotation| Quat::from_array(rotation.0));
-            let rotation = unit(rotation).ok_or_else(|| LoadError::invalid(format!("/nodes/{index}/rotation"), "has no length"))?;
+            let rotation =
+                unit::rotation(rotation).ok_or_else(|| LoadError::invalid(format!("/nodes/{index}/rotation"), "has no length"))?;
             let vector = |given: Option<[f32; 3]>, default| given.map_or(default, Vec3::from_array);
             return Ok((vector(json.scale, Vec3::ONE), rotation, vector(json.translation, Vec3::ZERO)));
         };
         let matrix = Mat4::from_cols_array(&matrix);
         let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
         let again = Mat4::from_scale_rotation_translation(scale, rotation, translation);
-        let parts_are_finite = scale.is_finite() && rotation.is_finite() && unit(rotation).is_some();
+        let parts_are_finite = scale.is_finite() && rotation.is_finite() && unit::rotation(rotation).is_some();
         if matrix.row(3) != glam::Vec4::W || matrix.determinant() == 0.0 || !parts_are_finite {
             return Err(LoadError::invalid(format!("/nodes/{index}/matrix"), "has no translation, rotation and scale"));
         }
@@ -156,9 +157,4 @@ fn read_light(index: usize, light: &Light) -> Result<PunctualLight, LoadError> {
         (Checked::Invalid, _) => return wrong("type", "unknown type"),
     };
     Ok(PunctualLight { name: light.name.clone().unwrap_or_default(), intensity, shape, range: light.range })
-}
-
-fn unit(rotation: Quat) -> Option<Quat> {
-    let length = rotation.length();
-    (length.is_finite() && length > 0.0).then(|| rotation / length)
 }
