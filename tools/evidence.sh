@@ -26,7 +26,7 @@
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
 # leaving_out: every graph on every scene with and without what the scene does not need, and what that saves (with the machine to itself); some ten
 # seconds a pair, most of it the driver's compiler.
-# viewer: first pictures, pictures a second, and memory over so many minutes without and with switching of graphs.
+# viewer: first pictures and pictures a second (with the machine to itself); memory over so many minutes of switching graphs, and a fifth as many without.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
@@ -46,7 +46,10 @@ compare_aa)
     tools/evidence/compare_aa.sh target/debug/aquifer docs/evidence/compare_aa.json "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
 viewer)
-    cargo run --quiet -p aquifer-viewer --example viewer_evidence -- docs/evidence/viewer.json "$(git rev-parse HEAD)" "$(date -u +%F)" "${1:-30}"
+    for what in pace "memory ${1:-30}"; do
+        # shellcheck disable=SC2086 # memory and its minutes are two words
+        cargo run --quiet -p aquifer-viewer --example viewer_evidence -- docs/evidence/viewer.json "$(git rev-parse HEAD)" "$(date -u +%F)" $what
+    done
     ;;
 restir_di | restir_gi)
     minutes=${1:-600}

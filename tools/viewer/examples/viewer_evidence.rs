@@ -1,12 +1,13 @@
-//! What the viewer's session is measured by: seconds to the first pictures, pictures a second, memory while graphs are switched. Run it with
-//! the machine to itself.
+//! What the viewer's session is measured by: seconds to the first pictures and pictures a second, with the machine to itself; memory while
+//! graphs are switched, for so many minutes.
 //!
 //! ```text
-//! cargo run -p aquifer-viewer --example viewer_evidence -- FILE COMMIT DATE MINUTES
+//! cargo run -p aquifer-viewer --example viewer_evidence -- FILE COMMIT DATE pace
+//! cargo run -p aquifer-viewer --example viewer_evidence -- FILE COMMIT DATE memory MINUTES
 //! ```
 //!
-//! Memory is that of the process, once a minute: first without switching, then while another graph is taken every few pictures. Software
-//! adapters may lose some with every dispatch; what switching costs is the difference between the two slopes, for one frame rendered.
+//! Memory is that of the process, once a minute: first without switching, then while another graph is taken every few pictures. Some drivers
+//! lose memory with every dispatch (docs/limits.md); what switching costs is the difference between the two slopes, for one picture.
 
 #[path = "../tests/common/board.rs"]
 mod board;
@@ -33,38 +34,49 @@ const COUNTING: Duration = Duration::from_secs(10);
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [file, commit, date, minutes] = &arguments[..] else {
-        eprintln!("viewer_evidence FILE COMMIT DATE MINUTES");
-        std::process::exit(2);
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (about, found) = match words[..] {
+        [file, commit, date, "pace"] => ([file, commit, date, "pace"], pace()),
+        [file, commit, date, "memory", minutes] => ([file, commit, date, "memory"], memory(minutes.parse().expect("minutes are a number"))),
+        _ => {
+            eprintln!("viewer_evidence FILE COMMIT DATE pace | memory MINUTES");
+            std::process::exit(2);
+        }
     };
-    let minutes: f64 = minutes.parse().expect("minutes are a number");
+    println!("{found:#}");
+    keep(about, found);
+}
+
+/// Puts what was found into the file, in place of what was there under that name.
+fn keep([file, commit, date, name]: [&str; 4], found: Value) {
+    let old = std::fs::read_to_string(file).ok().and_then(|text| serde_json::from_str(&text).ok());
+    let mut all: Value = old.unwrap_or_else(|| json!({}));
+    let adapter = aquifer_render::adapters().into_iter().next().expect("something has rendered");
+    all[name] =
+        json!({ "commit": commit, "date": date, "adapter": adapter.name, "driver": adapter.driver, "scene": "cornell", "found": found });
+    let text = format!("{all:#}\n");
+    std::fs::write(file, text).unwrap_or_else(|error| panic!("{file}: {error}"));
+}
+
+/// Seconds to the first pictures, and pictures a second.
+fn pace() -> Value {
     let began = Instant::now();
     let full = |graphs: &[&str]| aquifer_viewer::Opening { size: [1280, 720], ..opening(graphs, "cornell", vec![]) };
     let session = Session::start(full(&["path_tracer"]), || {});
-    let board = wait(&session, "the first picture", |board| board.sides[0].picture.is_some());
+    wait(&session, "the first picture", |board| board.sides[0].picture.is_some());
     let first = began.elapsed().as_secs_f64();
-    let one = pace(&session);
+    let one = counted(&session);
     let asked = Instant::now();
     session.send(Message::Recipe(1, Recipe::of("restir_di_unbiased")));
     wait(&session, "the second graph", |board| board.sides.len() > 1 && board.sides[1].picture.is_some());
     let second = asked.elapsed().as_secs_f64();
-    let two = pace(&session);
-    let spent: Vec<f64> = session.look().sides.iter().map(|side| side.spent).collect();
-    drop(session);
-    let memory = memory(minutes);
-    let all = json!({
-        "commit": commit, "date": date, "adapter": board.adapter, "scene": "cornell",
-        "first picture s": rounded(first), "second graph s": rounded(second),
-        "one graph": one, "two graphs": two, "ms spent by each": spent.into_iter().map(rounded).collect::<Vec<_>>(),
-        "memory": memory,
-    });
-    let text = serde_json::to_string_pretty(&all).expect("plain data");
-    println!("{text}");
-    std::fs::write(file, text + "\n").unwrap_or_else(|error| panic!("{file}: {error}"));
+    let two = counted(&session);
+    let spent: Vec<f64> = session.look().sides.iter().map(|side| rounded(side.spent)).collect();
+    json!({ "first picture s": rounded(first), "second graph s": rounded(second), "one graph": one, "two graphs": two, "ms spent by each": spent })
 }
 
 /// Pictures a second at the size that the session chose, once it has settled.
-fn pace(session: &Session) -> Value {
+fn counted(session: &Session) -> Value {
     std::thread::sleep(COUNTING);
     let (before, began) = (session.look().updates, Instant::now());
     std::thread::sleep(COUNTING);
