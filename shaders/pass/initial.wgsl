@@ -3,7 +3,8 @@
 //! Bitterli et al. 2020, alg. 3. Whether a ray then tests the sample that was kept is slot `visibility`'s to say. In a frame of validation a pixel
 //! that has a history does not draw: it finds what its history's sample stands for anew, from the same random numbers, and where that has
 //! changed, or the sample is hidden, says so on `stale`. The pass that made the history, and those after it, then let it go
-//! (Ouyang et al. 2021, § 5). Where neither lights nor objects move, nothing is validated.
+//! (Ouyang et al. 2021, § 5), and in that frame the pixel has its neighbours' samples alone, unless `redraw` has it draw after all. Where neither
+//! lights nor objects move, nothing is validated.
 //! @needs emissive_meshes punctual_lights environment
 
 import package::frame::frame::{NOW, index_of, inside};
@@ -41,6 +42,8 @@ override candidates: u32 = 32u;
 /// @unbiased 0
 /// @why which histories are let go depends on their samples
 override validate_every: u32 = 0u;
+/// A pixel whose history is let go draws in the same frame: these pixels' rays come on top of those of validation.
+override redraw: bool = false;
 
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels; for validation.
@@ -70,7 +73,7 @@ override validate_every: u32 = 0u;
             if (before != NOWHERE && history[before].weight.value > 0.0) {
                 let sample = history[before].sample;
                 lost = changed(sample, params.tolerance) || !visible(sample, s);
-                draws = false;
+                draws = lost && redraw;
             }
         }
         if (draws) { kept = resample(s, candidates, &rng); }
