@@ -5,15 +5,17 @@
 import package::base::rng::{Rng, rng_next4};
 import package::restir::inputs::{Candidate, Input, MAX_INPUTS, candidate, surface_of_input, target_from};
 import package::restir::reservoir::{Reservoir, Selection, finish, merge};
+import package::slot::shading::{shade_input};
 import package::surface::{Surface};
 
 fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: u32, rng: ptr<function, Rng>) -> Reservoir {
     var s: Selection;
     for (var i = 0u; i < count; i++) {
         let y = candidate(at, (*inputs)[i], i == 0u);
-        var w = 0.0;
-        if (y.p_hat > 0.0) { w = share(at, y, i, inputs, count) * y.p_hat * y.weight; }
-        merge(&s, y.sample, y.p_hat, w, (*inputs)[i].confidence, rng_next4(rng).x);
+        var m = 0.0;
+        if (y.p_hat > 0.0) { m = share(at, y, i, inputs, count); }
+        shade_input(at, y, m * y.weight);
+        merge(&s, y.sample, y.p_hat, m * y.p_hat * y.weight, (*inputs)[i].confidence, rng_next4(rng).x);
     }
     return finish(s);
 }

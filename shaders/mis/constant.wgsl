@@ -6,6 +6,7 @@
 import package::base::rng::{Rng, rng_next4};
 import package::restir::inputs::{Input, MAX_INPUTS, candidate, total_confidence};
 import package::restir::reservoir::{Reservoir, Selection, finish, merge};
+import package::slot::shading::{shade_input};
 import package::surface::{Surface};
 
 fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: u32, rng: ptr<function, Rng>) -> Reservoir {
@@ -14,6 +15,7 @@ fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: 
     for (var i = 0u; i < count; i++) {
         let y = candidate(at, (*inputs)[i], i == 0u);
         let c = (*inputs)[i].confidence;
+        shade_input(at, y, c / total * y.weight);
         merge(&s, y.sample, y.p_hat, c / total * y.p_hat * y.weight, c, rng_next4(rng).x);
     }
     return finish(s);

@@ -9,6 +9,7 @@
 import package::base::rng::{Rng, rng_next4};
 import package::restir::inputs::{Candidate, Input, MAX_INPUTS, candidate, surface_of_input, target_from, total_confidence};
 import package::restir::reservoir::{Reservoir, Selection, finish, merge};
+import package::slot::shading::{shade_input};
 import package::surface::{Surface};
 
 fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: u32, rng: ptr<function, Rng>) -> Reservoir {
@@ -21,6 +22,7 @@ fn combine(at: Surface, inputs: ptr<function, array<Input, MAX_INPUTS>>, count: 
         if (y.p_hat > 0.0) {
             if (i == 0u) { m = share_of_canonical(at, y, total, inputs, count); } else { m = share_of(y, c, (*inputs)[0].confidence, total); }
         }
+        shade_input(at, y, m * y.weight);
         merge(&s, y.sample, y.p_hat, m * y.p_hat * y.weight, c, rng_next4(rng).x);
     }
     return finish(s);

@@ -19,6 +19,9 @@ override emission: bool = true;
 /// Radiance of other paths, to add to.
 /// @optional
 @group(1) @binding(2) var<storage, read> onto: array<vec4<f32>>;
+/// What `temporal` or `spatial` made of all their inputs, with `shading = "all"`; where it says something, it is shown in place of what was kept.
+/// @optional
+@group(1) @binding(4) var<storage, read> light: array<vec4<f32>>;
 /// Radiance; alpha is 1 where the pixel sees a surface.
 @group(1) @binding(3) var<storage, read_write> color: array<vec4<f32>>;
 
@@ -36,7 +39,12 @@ override emission: bool = true;
     }
     let s = unpack_surface(record, NOW);
     let r = reservoir[at];
-    if (r.weight.value > 0.0 && (!TEST_SHADED || visible(r.sample, s))) { radiance += value(r.sample, s) * r.weight.value; }
+    let all = light[at];
+    if (all.w > 0.0) {
+        radiance += all.rgb;
+    } else if (r.weight.value > 0.0 && (!TEST_SHADED || visible(r.sample, s))) {
+        radiance += value(r.sample, s) * r.weight.value;
+    }
     if (emission && transport_min == 0u) { radiance += shown(record, s.view, NOW); }
     color[at] = vec4<f32>(radiance, 1.0);
 }

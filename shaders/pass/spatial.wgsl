@@ -17,6 +17,7 @@ import package::restir::reproject::{exactly, pixel_before};
 import package::restir::reservoir::{Reservoir};
 import package::restir::witness::{tell_of};
 import package::slot::mis::{combine};
+import package::slot::shading::{keep_light};
 import package::surface::{is_surface, unpack_surface};
 
 struct Params {
@@ -96,6 +97,7 @@ fn is_stale(pixel: u32) -> bool {
     let record = surface[at];
     if (!is_surface(record)) {
         reservoir[at] = current[at];
+        keep_light(at);
         return;
     }
     var rng = rng_for(id.xy);
@@ -132,4 +134,5 @@ fn is_stale(pixel: u32) -> bool {
         }
     }
     reservoir[at] = combine(unpack_surface(record, NOW), &inputs, count, &rng);
+    keep_light(at);
 }

@@ -14,6 +14,7 @@ import package::restir::reproject::{Search, pixel_before};
 import package::restir::reservoir::{Reservoir};
 import package::restir::witness::{tell_of};
 import package::slot::mis::{combine};
+import package::slot::shading::{keep_light};
 import package::surface::{is_surface, unpack_surface};
 
 struct Params {
@@ -58,6 +59,7 @@ override permute: bool = false;
     let record = surface[at];
     if (!is_surface(record)) {
         reservoir[at] = current[at];
+        keep_light(at);
         return;
     }
     var rng = rng_for(id.xy);
@@ -70,6 +72,7 @@ override permute: bool = false;
     }
     if (before == NOWHERE) {
         reservoir[at] = current[at];
+        keep_light(at);
         return;
     }
     let s = unpack_surface(record, NOW);
@@ -77,4 +80,5 @@ override permute: bool = false;
     inputs[0] = input_of(at, NOW, HUGE);
     inputs[1] = input_of(before, BEFORE, params.cap);
     reservoir[at] = combine(s, &inputs, 2u, &rng);
+    keep_light(at);
 }
