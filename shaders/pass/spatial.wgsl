@@ -15,6 +15,7 @@ import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
 import package::restir::neighbour::{NOWHERE, neighbour, similarity};
 import package::restir::reproject::{exactly, pixel_before};
 import package::restir::reservoir::{Reservoir};
+import package::restir::stale::{is_stale};
 import package::restir::witness::{tell_of};
 import package::slot::mis::{combine};
 import package::slot::shading::{keep_light};
@@ -74,20 +75,12 @@ const R2 = vec2<f32>(0.7548776662, 0.5698402910);
 /// From this frame's film position to last frame's, pixels.
 /// @optional
 @if(moving_camera || moving_objects) @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
-/// 1 where the pixel's history must go; `initial` finds out by validation.
-/// @optional
-@if(moving_lights || moving_objects) @group(1) @binding(2) var<storage, read> stale: array<u32>;
 /// Joined.
 @group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
 
 fn moved(pixel: u32) -> vec2<f32> {
     @if(moving_camera || moving_objects) { return motion[pixel]; }
     return vec2<f32>(0.0);
-}
-
-fn is_stale(pixel: u32) -> bool {
-    @if(moving_lights || moving_objects) { return stale[pixel] != 0u; }
-    return false;
 }
 
 @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) id: vec3<u32>) {

@@ -12,6 +12,7 @@ import package::restir::inputs::{Input, MAX_INPUTS, current, input_of, surface};
 import package::restir::neighbour::{NOWHERE, similarity};
 import package::restir::reproject::{Search, pixel_before};
 import package::restir::reservoir::{Reservoir};
+import package::restir::stale::{is_stale};
 import package::restir::witness::{tell_of};
 import package::slot::mis::{combine};
 import package::slot::shading::{keep_light};
@@ -46,9 +47,6 @@ override permute: bool = false;
 @group(1) @binding(0) var<uniform> params: Params;
 /// From this frame's film position to last frame's, pixels.
 @if(moving_camera || moving_objects) @group(1) @binding(1) var<storage, read> motion: array<vec2<f32>>;
-/// 1 where the pixel's history must go; `initial` finds out by validation.
-/// @optional
-@if(moving_lights || moving_objects) @group(1) @binding(2) var<storage, read> stale: array<u32>;
 /// Both joined.
 @group(1) @binding(3) var<storage, read_write> reservoir: array<Reservoir>;
 
@@ -66,11 +64,8 @@ override permute: bool = false;
     let limits = similarity(params.normal, params.depth);
     var moved = vec2<f32>(0.0);
     @if(moving_camera || moving_objects) { moved = motion[at]; }
-    var before = pixel_before(id.xy, moved, record, Search(tries, params.search, permute), limits, &rng);
-    @if(moving_lights || moving_objects) {
-        if (stale[at] != 0u) { before = NOWHERE; }
-    }
-    if (before == NOWHERE) {
+    let before = pixel_before(id.xy, moved, record, Search(tries, params.search, permute), limits, &rng);
+    if (before == NOWHERE || is_stale(at)) {
         reservoir[at] = current[at];
         keep_light(at);
         return;
