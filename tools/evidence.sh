@@ -22,7 +22,7 @@
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over. A row wants some 10⁹ rays.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
-# light_change: error of ReSTIR GI by frame around a jump of the sun. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
+# light_change: error of ReSTIR GI by frame after the sun goes out but for a tenth. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
 # leaving_out: every graph on every scene with and without what the scene does not need, and what that saves (with the machine to itself); some ten
 # seconds a pair, most of it the driver's compiler.

@@ -132,8 +132,9 @@ fn the_table_of_the_light_change_is_its_evidence() {
     assert_table("docs/restir_gi.md", "docs/evidence/light_change.json", shown, |row| {
         let by_frame = row["error / converged by frame"].as_array().expect("a number for each frame");
         let at = |frame: usize| by_frame[frame].as_f64().expect("a number");
-        let errors: Vec<String> = [0, 5, 6, 12, 30, 60].map(|frame| format!("{:.1}", at(frame))).to_vec();
-        format!("| `{}` | {} | {} frames |", text(row, "graph"), errors.join(" | "), number(row, "frames above twice"))
+        let errors: Vec<String> = [0, 4, 5, 6, 12, 30, 60].map(|frame| format!("{:.1}", at(frame))).to_vec();
+        let redraw = if text(row, "line").is_empty() { "" } else { ", redraw" };
+        format!("| `{}`{redraw} | {} | {} frames |", text(row, "graph"), errors.join(" | "), number(row, "frames above twice"))
     });
 }
 
@@ -171,4 +172,39 @@ fn the_table_of_graphs_held_against_themselves_is_its_evidence() {
     assert_table("docs/compare.md", "docs/evidence/compare_aa.json", shown, |row| {
         format!("| `{}` | {} runs | {} |", text(row, "graph"), number(row, "runs"), number(row, "verdicts"))
     });
+}
+
+#[test]
+fn the_figures_of_the_viewer_are_its_evidence() {
+    let evidence: Value = serde_json::from_str(&read("docs/evidence/viewer.json")).expect("the evidence is JSON");
+    let (pace, memory) = (&evidence["pace"]["found"], &evidence["memory"]["found"]);
+    let pictures = |found: &Value| {
+        let side = |axis: usize| found["size"][axis].as_u64().expect("pixels");
+        format!("{:.1} pictures a second at {}×{}", number(found, "pictures/s"), side(0), side(1))
+    };
+    let kept = |found: &Value| {
+        let by_minute: Vec<f64> = found["MiB by minute"].as_array().expect("minutes").iter().filter_map(Value::as_f64).collect();
+        let (first, last) = (by_minute.first().expect("a first"), by_minute.last().expect("a last"));
+        let most = by_minute.iter().copied().fold(0.0, f64::max);
+        format!("{first:.0} MiB, then {last:.0} MiB, at most {most:.0}; {} pictures", number(found, "pictures"))
+    };
+    let (still, switching) = (&memory["without switching"], &memory["switching"]);
+    let table = [
+        format!("| first picture, after the start | {:.2} s |", number(pace, "first picture s")),
+        format!("| a second graph, after it was asked for | {:.2} s |", number(pace, "second graph s")),
+        format!("| one graph | {} |", pictures(&pace["one graph"])),
+        format!("| two graphs | {} |", pictures(&pace["two graphs"])),
+        format!("| memory, {:.0} minutes of one graph | {} |", number(still, "minutes"), kept(still)),
+        format!(
+            "| memory, {:.0} minutes with {} switches | {} |",
+            number(switching, "minutes"),
+            number(switching, "switches"),
+            kept(switching)
+        ),
+    ];
+    let page = read("docs/viewer.md");
+    let begin = page.find("## Figures").expect("a section of figures");
+    let shown: Vec<&str> =
+        page[begin..].lines().skip_while(|line| !line.starts_with("|---")).skip(1).take_while(|line| line.starts_with("| ")).collect();
+    assert_eq!(shown, table, "docs/viewer.md should hold:\n{}", table.join("\n"));
 }

@@ -1,5 +1,6 @@
 //! Slot `shading`: what all inputs bring has the mean of what one kept sample brings, and less noise.
 
+use crate::toy::{module, replaced};
 use aquifer_lab::stats::{Difference, Moments};
 use aquifer_render::{Context, Renderer};
 use aquifer_scene::Scene;
@@ -14,7 +15,7 @@ fn cornell() -> Arc<Scene> {
 }
 
 /// Two passes shade the same frame, one what was kept and one all inputs.
-fn renderer(context: &Context, scene: &Arc<Scene>, graph: &str, mis: &str, visibility: &str) -> Renderer {
+fn renderer(context: &Context, graph: &str, mis: &str, visibility: &str, shaders: &[(&str, &str)]) -> Renderer {
     let text = format!(
         "extends = '{graph}.toml'
 slots = {{ mis = '{mis}', visibility = '{visibility}' }}
@@ -34,7 +35,7 @@ in.reservoir = 'spatial.reservoir'
 in.light = 'spatial.light'"
     );
     let keep = &["shade.color", "shade_all.color"];
-    Parts { keep, ..Parts::new(scene, &text) }.renderer(context)
+    Parts { keep, shaders, ..Parts::new(&cornell(), &text) }.renderer(context)
 }
 
 /// Pixels of one frame after some: what was kept, and all.
@@ -60,14 +61,13 @@ fn hue(a: [f32; 3], b: [f32; 3]) -> f64 {
 #[test]
 fn targets_that_hold_visibility_give_the_same_luminance_pixel_by_pixel() {
     let Some(context) = context() else { return };
-    let scene = cornell();
     for (graph, mis) in [
         ("restir_di_unbiased", "pairwise"),
         ("restir_di_unbiased", "balance"),
         ("restir_gi_unbiased", "pairwise"),
         ("restir_gi_unbiased", "constant"),
     ] {
-        let [kept, all] = shaded(&mut renderer(&context, &scene, graph, mis, "in_target"), 1);
+        let [kept, all] = shaded(&mut renderer(&context, graph, mis, "in_target", &[]), 1);
         let (mut lit, mut coloured) = (0, 0);
         for (index, (kept, all)) in kept.into_iter().zip(all).enumerate() {
             let (a, b) = (luminance(kept), luminance(all));
@@ -82,26 +82,32 @@ fn targets_that_hold_visibility_give_the_same_luminance_pixel_by_pixel() {
     }
 }
 
-#[test]
-fn rays_at_shading_keep_the_mean() {
-    let Some(context) = context() else { return };
-    let mut renderer = renderer(&context, &cornell(), "restir_di_unbiased", "pairwise", "at_shading");
+/// Of the light of all inputs from that of what was kept, as a share, over seeds.
+fn difference(context: &Context, shaders: &[(&str, &str)]) -> Difference {
+    let mut renderer = renderer(context, "restir_di_unbiased", "pairwise", "at_shading", shaders);
     let (mut kept, mut difference) = (Moments::default(), Moments::default());
     for seed in 0..48 {
         let [of_kept, of_all] = shaded(&mut renderer, seed).map(|pixels| pixels.into_iter().map(luminance).sum::<f64>());
         kept.push(of_kept);
         difference.push(of_all - of_kept);
     }
-    let found = Difference { value: difference.mean(), standard_error: difference.standard_error(), freedom: 47.0 }.relative_to(kept.mean());
-    eprintln!("all less kept: {:+.3} % ± {:.3} %", 100.0 * found.value, 100.0 * found.standard_error);
-    // Without the rays, shadows would be gone: some 20 % of the light.
-    assert!(found.standard_error < 2e-3, "{found:?}");
-    assert!(found.score(0.0).abs() < 4.0, "{found:?}");
+    Difference { value: difference.mean(), standard_error: difference.standard_error(), freedom: 47.0 }.relative_to(kept.mean())
+}
+
+#[test]
+fn rays_at_shading_keep_the_mean() {
+    let Some(context) = context() else { return };
+    let found = difference(&context, &[]);
+    assert!(found.standard_error < 2e-3 && found.score(0.0).abs() < 4.0, "{found:?}");
+    let blind = replaced(module("shading/all"), "if (TEST_SHADED && !visible(y.sample, at)) { return; }", "");
+    let planted = difference(&context, &[("shading/all", &blind)]);
+    eprintln!("all less kept: {found:?}; without the rays: {planted:?}");
+    assert!(planted.score(0.0) > 10.0, "{planted:?}");
 }
 
 #[test]
 fn a_rule_that_cannot_tell_shades_what_was_kept() {
     let Some(context) = context() else { return };
-    let [kept, all] = shaded(&mut renderer(&context, &cornell(), "restir_gi_unbiased", "contribution", "in_target"), 1);
+    let [kept, all] = shaded(&mut renderer(&context, "restir_gi_unbiased", "contribution", "in_target", &[]), 1);
     assert!(kept == all && kept.iter().any(|pixel| luminance(*pixel) > 0.0));
 }
