@@ -138,6 +138,17 @@ fn the_table_of_the_light_change_is_its_evidence() {
     });
 }
 
+/// What rows have under a key, each once.
+fn names<'a>(rows: &'a [Value], key: &str) -> Vec<&'a str> {
+    let mut found = Vec::new();
+    for name in rows.iter().map(|row| text(row, key)) {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
+}
+
 /// One line a case, with what came of each graph.
 #[test]
 fn the_table_of_stress_is_its_evidence() {
@@ -149,18 +160,15 @@ fn the_table_of_stress_is_its_evidence() {
         "not_resolved" => format!("± {:.0} %", 100.0 * number(&row["bias"], "standard_error")),
         other => other.to_owned(),
     };
-    let mut graphs: Vec<&str> = Vec::new();
-    for graph in rows.iter().map(|row| text(row, "graph")) {
-        if !graphs.contains(&graph) {
-            graphs.push(graph);
-        }
-    }
-    let line = |rows: &[Value]| {
-        let cell = |graph: &&str| rows.iter().find(|row| text(row, "graph") == *graph).map_or("not run".to_owned(), word);
-        let cells: Vec<String> = graphs.iter().map(cell).collect();
-        format!("| `{}` | {} |", text(&rows[0], "case"), cells.join(" | "))
+    let (graphs, cases) = (names(rows, "graph"), names(rows, "case"));
+    let line = |case: &&str| {
+        let cell = |graph: &&str| {
+            let row = rows.iter().find(|row| text(row, "case") == *case && text(row, "graph") == *graph);
+            row.map_or("not run".to_owned(), word)
+        };
+        format!("| `{case}` | {} |", graphs.iter().map(cell).collect::<Vec<_>>().join(" | "))
     };
-    let table: Vec<String> = rows.chunk_by(|a, b| a["case"] == b["case"]).map(line).collect();
+    let table: Vec<String> = cases.iter().map(line).collect();
     let page = read("docs/stress.md");
     let shown: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
     assert_eq!(shown, table, "docs/stress.md should hold:\n{}", table.join("\n"));

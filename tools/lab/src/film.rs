@@ -147,9 +147,15 @@ impl Film {
     pub fn write(&self, path: &Path) -> Result<(), FilmError> {
         self.check()?;
         match Format::of(path)? {
-            Format::Exr => exr::write(self, path),
+            Format::Exr => exr::write(self, path, exr::Packing::Packed),
             Format::Png => png::write(self, path),
         }
+    }
+
+    /// Writes `.exr` without packing it: for films that are noise, which are a third larger then and written at once.
+    pub(crate) fn write_plain(&self, path: &Path) -> Result<(), FilmError> {
+        self.check()?;
+        exr::write(self, path, exr::Packing::Plain)
     }
 
     fn check(&self) -> Result<(), FilmError> {

@@ -3,7 +3,8 @@
 //! Noise is what is left of a render when the mean over seeds is taken away, so bias and the picture itself have no part in it.
 
 use super::report::Correlation;
-use crate::{film::Film, stats::Moments};
+use crate::film::Film;
+use rayon::prelude::*;
 
 /// Pixels that the spatial figures look away.
 const REACH: usize = 8;
@@ -19,7 +20,7 @@ pub fn correlation(frames: &[Vec<Film>]) -> Correlation {
     }
     Correlation {
         temporal: before.iter().rev().map(|earlier| product(last, earlier) / variance).collect(),
-        spatial: (1..=REACH).map(|away| spatial(last, frames[frames.len() - 1][0].size, away) / variance).collect(),
+        spatial: (1..=REACH).into_par_iter().map(|away| spatial(last, frames[frames.len() - 1][0].size, away) / variance).collect(),
         flicker,
         accumulation_gain: Vec::new(),
     }
@@ -57,22 +58,22 @@ fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
 
 /// Covariance of pixels `away` from each other, across and down alike.
 fn spatial(noise: &[Vec<f64>], size: [u32; 2], away: usize) -> f64 {
-    let [width, height] = size.map(|side| side as usize);
-    let mut pairs = Moments::default();
+    let row = 3 * size[0] as usize;
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (mut sum, mut pairs) = (0.0, 0);
     for film in noise {
-        for (i, value) in film.iter().enumerate() {
-            let (x, y) = (i / 3 % width, i / 3 / width);
-            if x + away < width {
-                pairs.push(value * film[i + 3 * away]);
-            }
-            if y + away < height {
-                pairs.push(value * film[i + 3 * away * width]);
-            }
+        for values in film.chunks_exact(row).filter(|values| values.len() > 3 * away) {
+            sum += product(values, &values[3 * away..]);
+            pairs += values.len() - 3 * away;
+        }
+        if let Some(below) = film.get(row * away..) {
+            sum += product(film, below);
+            pairs += below.len();
         }
     }
     // The mean over seeds was estimated from the same seeds.
     let seeds = noise.len() as f64;
-    pairs.mean() * seeds / (seeds - 1.0).max(1.0)
+    sum / pairs.max(1) as f64 * seeds / (seeds - 1.0).max(1.0)
 }
 
 /// Mean distance of the last two frames, relative to the mean.

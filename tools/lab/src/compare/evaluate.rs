@@ -12,6 +12,7 @@ use crate::{
     film::Film,
     stats::error::{mse, rel_mse},
 };
+use rayon::prelude::*;
 
 /// All rounds of one scene.
 pub struct Rounds<'a> {
@@ -55,7 +56,7 @@ impl Rounds<'_> {
             Ok(FilmError { mse: mse(&film, reference)?.value(), rel_mse: rel_mse(&film, reference)?.value() })
         };
         let of_offer =
-            |offer: usize| self.rounds.iter().map(|round| error(self.store.film(&round.runs[cell][offer].takes[take])?)).collect();
+            |offer: usize| self.rounds.par_iter().map(|round| error(self.store.film(&round.runs[cell][offer].takes[take])?)).collect();
         (0..self.settled.cells[cell].offers.len()).map(of_offer).collect()
     }
 
@@ -133,7 +134,7 @@ impl Rounds<'_> {
     /// When a film cannot be read.
     pub fn films(&self, index: usize, cell: &Cell, take: usize) -> Result<Vec<Film>, CompareError> {
         let heaviest = (0..cell.variants.len()).max_by(|&a, &b| cell.variants[a].weight.total_cmp(&cell.variants[b].weight)).unwrap_or(0);
-        self.rounds.iter().map(|round| self.store.film(&round.runs[index][heaviest].takes[take])).collect()
+        self.rounds.par_iter().map(|round| self.store.film(&round.runs[index][heaviest].takes[take])).collect()
     }
 }
 

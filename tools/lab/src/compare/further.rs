@@ -6,25 +6,30 @@ use crate::{
     metrics::{Metric, Pair},
     stats::SizesDiffer,
 };
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Further metrics by key, each over the films of all seeds; FLIP, which costs a hundred times the others, of the first film alone. What is
 /// undefined (relative to black) or infinite (PSNR of equal images) for a film is left out.
 pub fn metrics(films: &[Film], reference: &Film) -> Result<BTreeMap<String, Summary>, SizesDiffer> {
-    let pairs = films.iter().map(|film| Pair::new(film, reference)).collect::<Result<Vec<_>, _>>()?;
     let area = Area::whole(reference.size);
-    let mut found = BTreeMap::new();
-    for metric in Metric::all().filter(|metric| !matches!(metric, Metric::Mse | Metric::RelMse)) {
-        let costly = matches!(metric, Metric::FlipLdr | Metric::FlipHdr);
-        let measured = pairs.iter().take(if costly { 1 } else { pairs.len() }).map(|pair| pair.measure(metric, &area));
-        let values: Option<Vec<f64>> = measured.map(|value| Ok(value?.map(|value| value.value))).collect::<Result<_, SizesDiffer>>()?;
-        found.extend(
-            values
-                .filter(|values| values.iter().all(|value| value.is_finite()))
-                .map(|values| (metric.key().to_owned(), Summary::of(values))),
-        );
-    }
-    Ok(found)
+    let further: Vec<Metric> = Metric::all().filter(|metric| !matches!(metric, Metric::Mse | Metric::RelMse)).collect();
+    let of_first = |metric: &Metric| matches!(metric, Metric::FlipLdr | Metric::FlipHdr);
+    let measured = films.par_iter().enumerate().map(|(index, film)| {
+        let pair = Pair::new(film, reference)?;
+        let asked = further.iter().filter(|metric| index == 0 || !of_first(metric));
+        asked.map(|&metric| Ok((metric, pair.measure(metric, &area)?.map(|value| value.value)))).collect()
+    });
+    let measured: Vec<Vec<(Metric, Option<f64>)>> = measured.collect::<Result<_, SizesDiffer>>()?;
+    let values = |wanted: Metric| -> Option<Vec<f64>> {
+        measured
+            .iter()
+            .flatten()
+            .filter(|(metric, _)| *metric == wanted)
+            .map(|(_, value)| value.filter(|value| value.is_finite()))
+            .collect()
+    };
+    Ok(further.into_iter().filter_map(|metric| Some((metric.key().to_owned(), Summary::of(values(metric)?)))).collect())
 }
 
 #[cfg(test)]

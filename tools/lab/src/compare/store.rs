@@ -134,7 +134,7 @@ impl Store {
     /// When the disk refuses.
     pub fn keep_film(&self, name: String, film: &Film) -> Result<(String, String), CompareError> {
         let path = self.folder.join(&name);
-        film.write(&path)?;
+        film.write_plain(&path)?;
         let bytes = fs::read(&path).map_err(|source| CompareError::Io { path, source })?;
         Ok((name, hash(&bytes)))
     }

@@ -1,4 +1,4 @@
-//! Films as OpenEXR files: a single part with dotted layers, ZIP16 (lossless), facts as attributes.
+//! Films as OpenEXR files: a single part with dotted layers, facts as attributes.
 
 mod attributes;
 mod order;
@@ -13,10 +13,19 @@ use std::{fs::File, io::Cursor, path::Path};
 
 type FlatLayer = Layer<AnyChannels<FlatSamples>>;
 
+/// How samples are stored; nothing is lost either way.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Packing {
+    /// ZIP16.
+    Packed,
+    /// As they are.
+    Plain,
+}
+
 /// Equal films make equal bytes.
-pub(super) fn write(film: &Film, path: &Path) -> Result<(), FilmError> {
+pub(super) fn write(film: &Film, path: &Path, packing: Packing) -> Result<(), FilmError> {
     let failed = |source| FilmError::Exr { path: path.to_owned(), source };
-    let image = Image::from_layer(layer(film, path)?);
+    let image = Image::from_layer(layer(film, path, packing)?);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).map_err(failed)?;
     let mut bytes = bytes.into_inner();
@@ -24,13 +33,17 @@ pub(super) fn write(film: &Film, path: &Path) -> Result<(), FilmError> {
     Ok(atomic::write(path, &bytes)?)
 }
 
-fn layer(film: &Film, path: &Path) -> Result<FlatLayer, FilmError> {
+fn layer(film: &Film, path: &Path, packing: Packing) -> Result<FlatLayer, FilmError> {
     let mut attributes = LayerAttributes { software_name: Some("Aquifer".into()), ..LayerAttributes::default() };
     if let Some(facts) = &film.facts {
         attributes.other = attributes::from_facts(facts, path)?;
     }
     let channels = channels::split(film).into_iter().map(|(name, plane)| AnyChannel::new(name, FlatSamples::F32(plane)));
-    let encoding = Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let compression = match packing {
+        Packing::Packed => Compression::ZIP16,
+        Packing::Plain => Compression::Uncompressed,
+    };
+    let encoding = Encoding { compression, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
     let size = (film.size[0] as usize, film.size[1] as usize);
     Ok(Layer::new(size, attributes, encoding, AnyChannels::sort(channels.collect())))
 }

@@ -15,6 +15,7 @@ use crate::{
 };
 use color::Color;
 use filter::{Feature, Plane, Smoothing};
+use rayon::prelude::*;
 
 pub use exposure::Exposures;
 
@@ -56,13 +57,17 @@ pub(super) fn ldr(image: &Film, reference: &Film) -> FlipMap {
 pub(super) fn hdr(image: &Film, reference: &Film) -> Option<FlipMap> {
     let exposures = Exposures::of(&reference.color)?;
     let (eye, size) = (Eye::new(PIXELS_PER_DEGREE), image.size.map(|side| side as usize));
-    let mut largest = vec![0.0_f32; reference.pixels()];
-    for exposure in exposures.steps() {
+    let exposures: Vec<f32> = exposures.steps().collect();
+    let errors = |&exposure: &f32| {
         let shown = |film: &Film| film.color.iter().map(|&color| exposure::develop(color, exposure)).collect::<Vec<_>>();
-        let errors = eye.difference(size, &shown(image), &shown(reference));
-        // `max` would pass over a pixel that is not a number.
-        largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = if *largest >= error { *largest } else { error });
-    }
+        eye.difference(size, &shown(image), &shown(reference))
+    };
+    // `max` would pass over a pixel that is not a number.
+    let larger = |a: f32, b: f32| if a.is_nan() || a >= b { a } else { b };
+    let largest = exposures
+        .par_iter()
+        .map(errors)
+        .reduce(|| vec![0.0; reference.pixels()], |a, b| a.into_iter().zip(b).map(|(a, b)| larger(a, b)).collect());
     Some(FlipMap { size: image.size, errors: largest })
 }
 
