@@ -175,6 +175,25 @@ fn the_table_of_stress_is_its_evidence() {
 }
 
 #[test]
+fn the_table_of_long_runs_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| ") && line.contains(" frames |");
+    assert_table("docs/stress.md", "docs/evidence/long.json", shown, |row| {
+        let (drift, bytes) = (&row["drift"], &row["device_bytes"]);
+        format!(
+            "| {} | {} frames | {:+.2} % ± {:.2} % | {}, {} | {}, then {} |",
+            text(row, "graph"),
+            number(row, "frames"),
+            100.0 * number(drift, "value"),
+            100.0 * number(drift, "standard_error"),
+            number(row, "nan"),
+            number(row, "infinite"),
+            bytes[0],
+            bytes[1]
+        )
+    });
+}
+
+#[test]
 fn the_table_of_graphs_held_against_themselves_is_its_evidence() {
     let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" runs |");
     assert_table("docs/compare.md", "docs/evidence/compare_aa.json", shown, |row| {

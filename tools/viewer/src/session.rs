@@ -1,6 +1,6 @@
 //! Live graphs without a window: messages in, pictures out.
 //!
-//! The thread of [`worker`] owns scene, device and renderers. It puts what it did on the [`Board`]; whoever looks takes a copy, whose large
+//! The thread of `worker` owns scene, device and renderers. It puts what it did on the [`Board`]; whoever looks takes a copy, whose large
 //! parts are shared. Graphs are compiled in threads of their own (`build`), references in another (`truth`), errors in a third
 //! (`judge`): the pictures go on meanwhile.
 
