@@ -93,6 +93,11 @@ fn the_table_of_unbiased_direct_light_is_its_evidence() {
     assert_table("docs/restir_di.md", "docs/evidence/restir_di.json", |line| VERDICTS.iter().any(|end| line.ends_with(end)), told);
 }
 
+#[test]
+fn the_table_of_unbiased_indirect_light_is_its_evidence() {
+    assert_table("docs/restir_gi.md", "docs/evidence/restir_gi.json", |line| VERDICTS.iter().any(|end| line.ends_with(end)), told);
+}
+
 /// Milliseconds and rays a pixel of each pass.
 fn passes(row: &Value) -> String {
     let pass = |it: &Value| format!("{} {:.1} ({:.2})", text(it, "pass"), number(it, "ms"), number(it, "rays a pixel"));
