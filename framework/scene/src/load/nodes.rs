@@ -83,15 +83,15 @@ impl Loader<'_> {
         let matrix = Mat4::from_cols_array(&matrix);
         let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
         let again = Mat4::from_scale_rotation_translation(scale, rotation, translation);
-        let parts_are_finite = scale.is_finite() && rotation.is_finite() && unit::rotation(rotation).is_some();
-        if matrix.row(3) != glam::Vec4::W || matrix.determinant() == 0.0 || !parts_are_finite {
+        let turn = unit::rotation(rotation).filter(|_| scale.is_finite());
+        let Some(turn) = turn.filter(|_| matrix.row(3) == glam::Vec4::W && matrix.determinant() != 0.0) else {
             return Err(LoadError::invalid(format!("/nodes/{index}/matrix"), "has no translation, rotation and scale"));
-        }
+        };
         let largest = matrix.to_cols_array().into_iter().fold(0.0_f32, |largest, entry| largest.max(entry.abs()));
         if !again.abs_diff_eq(matrix, largest * SHEAR) {
             self.warn(format!("{name}: its matrix shears, which glTF does not allow; shown without the shear"));
         }
-        Ok((scale, rotation.normalize(), translation))
+        Ok((scale, turn, translation))
     }
 
     /// Every node gets a camera of its own, since the node places it. `None` for orthographic ones.

@@ -10,7 +10,7 @@ use aquifer_scenes::{
 use glam::{Mat3, Quat, Vec3};
 
 const NOISE: &str = "one sample of a light a pixel, of which few matter: noise";
-const ALSO_NOISE: &str = "all seeds leave a standard error of 3 %, where half of the band is 2.5 %: noise";
+const UNRESOLVED: &str = "all seeds leave a standard error of 3 %, where half of the band is 2.5 %: noise";
 
 const CORNER: &str = "few paths find what a lamp of 1e-8 m² sends round a corner: noise";
 const MIRROR: &str =
@@ -39,8 +39,8 @@ pub(super) const CASES: &[Case] = &[
     Case {
         known: &[
             Known { graph: "light_sampling", why: NOISE },
-            Known { graph: "ris_only", why: ALSO_NOISE },
-            Known { graph: "restir_di_unbiased", why: ALSO_NOISE },
+            Known { graph: "ris_only", why: UNRESOLVED },
+            Known { graph: "restir_di_unbiased", why: UNRESOLVED },
         ],
         ..Case::still("grazing", "a long floor seen and lit at a grazing angle", grazing)
     },
