@@ -1,8 +1,13 @@
 //! Which pixel of last frame saw what a pixel sees now. Chosen from the g-buffer alone.
+//!
+//! Motion is between pixels, whatever the film samples in them: the pixel nearest to the film sample itself would stand off by the difference of two
+//! frames' jitters, rounded, whose mean is not 0 for a low-discrepancy sequence (R2: 0.25 and 0.43 pixels a frame), and histories would wander over the
+//! image, lost where they come to an edge. Parts of a pixel are rounded down after adding a number in [0, 1) that all pixels of the frame share: right
+//! in the mean, where motion is uniform no history is taken twice, and what stands still keeps its pixel.
 
 import package::base::rng::{Rng, pcg4d, rng_next4};
-import package::frame::frame::{BEFORE, camera_at, film_sample, frame, index_of};
-import package::frame::random::{random_stage};
+import package::frame::frame::{BEFORE, camera_at, frame, index_of};
+import package::frame::random::{random_stage, rng_of_frame};
 import package::restir::inputs::{previous_surface};
 import package::restir::neighbour::{LIKE, NOT_THERE, NOWHERE, Similarity, disk, on_film, unlike};
 import package::restir::witness::{tell_looked};
@@ -27,15 +32,14 @@ fn exactly() -> Search {
 /// `motion` is what the g-buffer says of the pixel.
 fn pixel_before(pixel: vec2<u32>, motion: vec2<f32>, record: SurfaceRecord, search: Search, limits: Similarity, rng: ptr<function, Rng>) -> u32 {
     if (frame.history_valid == 0u) { return NOWHERE; }
-    let film = film_sample(frame.camera, pixel) + motion;
-    let jitter = vec2<f32>(frame.camera_prev.jitter_x, frame.camera_prev.jitter_y);
+    var shared_by_all = rng_of_frame();
+    let moved = motion + rng_next4(&shared_by_all).xy;
     let before = position_of(record.instance, record.triangle, record.barycentrics, BEFORE);
     let distance = length(before - camera_at(BEFORE).position);
     for (var i = 0u; i <= search.tries; i++) {
         var offset = vec2<f32>(0.0);
         if (i > 0u) { offset = search.radius * disk(rng_next4(rng).xy); }
-        // The nearest of last frame's film samples.
-        var there = vec2<i32>(floor(film + offset - jitter + 0.5));
+        var there = vec2<i32>(pixel) + vec2<i32>(floor(moved + offset));
         if (i == 0u && search.permute) { there = permuted(there); }
         if (!on_film(there, frame.extent)) {
             tell_looked(there, BEFORE, NOT_THERE);

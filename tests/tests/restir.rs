@@ -24,6 +24,8 @@ mod path_shift;
 mod planted;
 #[path = "restir/reconnection.rs"]
 mod reconnection;
+#[path = "restir/reproject.rs"]
+mod reproject;
 #[path = "restir/shading.rs"]
 mod shading;
 #[path = "restir/toy.rs"]
