@@ -126,6 +126,38 @@ fn density(c: vec2<f32>) -> f32 {
 }
 ";
 
+/// The same of the sky, from above everything that could hide it, by the direction that its uv stand for: by uv the density is spikes, as narrow as the texels
+/// beside the sun. How density by uv follows from that by direction, the environment's own sampler shows.
+const BSDF_RAY_SKY: &str = "
+import package::base::math::{HUGE};
+import package::bsdf::{Bsdf};
+import package::frame::frame::{NOW};
+import package::scene::geometry::{NONE};
+import package::scene::ray::{Hit};
+import package::slot::lights::{light_of, light_point, uv_of};
+import package::slot::trace::{closest};
+import package::surface::{Surface, ray_from, scatter_pdf, scatter_sample};
+fn at() -> Surface {
+    var s: Surface;
+    s.position = vec3<f32>(0.0, 1000.0, 0.0);
+    s.view = normalize(vec3<f32>(0.6, 1.0, 0.2));
+    s.normal = vec3<f32>(0.0, 1.0, 0.0);
+    s.geometric = s.normal;
+    s.size = 1.0;
+    s.bsdf = Bsdf(vec3<f32>(0.5), 0.0, vec3<f32>(0.04), 1.0, 0.3);
+    return s;
+}
+fn sky() -> u32 { return light_of(Hit(HUGE, NONE, 0u, vec2<f32>(0.0))); }
+fn draw(bits: vec4<u32>) -> vec2<f32> {
+    let drawn = scatter_sample(at(), unit(bits).xyz);
+    if (drawn.pdf <= 0.0) { return vec2<f32>(-1.0); }
+    let hit = closest(ray_from(at(), drawn.direction), NOW);
+    if (light_of(hit) != sky()) { return vec2<f32>(-1.0); }
+    return chart_of(light_point(sky(), uv_of(hit, drawn.direction), NOW).position);
+}
+fn density(c: vec2<f32>) -> f32 { return FOUR_PI * scatter_pdf(at(), direction_of(c)); }
+";
+
 fn samplers() -> Vec<(String, String, &'static str)> {
     let warp = |name: &str, call: &str, pdf: &str, import: &str| {
         let text = format!(
@@ -165,6 +197,7 @@ fn samplers() -> Vec<(String, String, &'static str)> {
         all.push((format!("bsdf metallic {metallic} alpha {alpha} cos {cos}"), text, "cornell"));
     }
     all.push(("BSDF rays on a light".into(), BSDF_RAY.into(), "cornell"));
+    all.push(("BSDF rays on the sky".into(), BSDF_RAY_SKY.into(), "outdoor"));
     all
 }
 
