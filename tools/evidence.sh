@@ -9,6 +9,7 @@
 #     tools/evidence.sh restir_di_cost
 #     tools/evidence.sh restir_gi_cost
 #     tools/evidence.sh light_change
+#     tools/evidence.sh moving_bias
 #     tools/evidence.sh error_parts [SCENE …]
 #     tools/evidence.sh stress [CASE …]
 #     tools/evidence.sh long [GRAPH …]
@@ -22,7 +23,7 @@
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over. A row wants some 10⁹ rays.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
-# light_change: error of ReSTIR GI by frame after the sun goes out but for a tenth. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
+# light_change: error of ReSTIR GI by frame after the sun goes out but for a tenth. moving_bias: bias by frame where all moves. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
 # leaving_out: every graph on every scene with and without what the scene does not need, and what that saves (with the machine to itself); some ten
 # seconds a pair, most of it the driver's compiler.
@@ -61,7 +62,7 @@ restir_di_cost | restir_gi_cost)
     subject=${item#restir_}
     cargo run --quiet -p aquifer-tests --example restir_cost -- "${subject%_cost}" "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
-light_change | error_parts)
+light_change | moving_bias | error_parts)
     cargo run --quiet -p aquifer-tests --example "$item" -- "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
 leaving_out)
@@ -77,7 +78,7 @@ stress | long)
     ;;
 *)
     echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change," \
-        "error_parts, leaving_out, stress, long, viewer" >&2
+        "moving_bias, error_parts, leaving_out, stress, long, viewer" >&2
     exit 2
     ;;
 esac

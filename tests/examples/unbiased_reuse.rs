@@ -18,13 +18,13 @@ use aquifer_lab::{
     },
 };
 use aquifer_render::{Context, View};
-use aquifer_scene::{Channel, Interpolation, Scene, Track};
+use aquifer_scene::Scene;
 use aquifer_tests::{
     Parts, context,
     evidence::{Evidence, told},
+    motion::gliding,
     seeds::{SIDE, add_seeds, path_traced_film},
 };
-use glam::{Quat, Vec3};
 use serde_json::json;
 use std::{
     fs,
@@ -42,8 +42,6 @@ const MOST_SEEDS: u64 = 4000;
 const PART: u64 = 256;
 /// Seconds a frame.
 const STEP: f32 = 1.0 / 30.0;
-/// Metres a second, of all that moves.
-const PACE: f32 = 0.5;
 
 /// What is shown of a kind of light.
 struct Subject {
@@ -214,7 +212,7 @@ impl Measuring<'_> {
     /// Adds seeds, at most up to `goal`, and writes what all of them show.
     fn part(&self, goal: u64, mut evidence: Evidence) -> End {
         let Case { lit, motion, mis } = self.case;
-        let scene = made(lit.scene, motion);
+        let scene = gliding(lit.scene, motion);
         let moving = View { step: STEP, ..View::default() };
         let name = format!("{}-{}-{}-{motion}", self.subject.name, lit.scene, lit.transport).replace([' ', ':'], "_");
         let kept = self.folder.join(format!("{name}-{mis}.json"));
@@ -269,27 +267,4 @@ impl Measuring<'_> {
         });
         Blocks::of_film(&film, SIDE, Quantity::Luminance)
     }
-}
-
-/// A scene whose cameras glide; with "all moves" lamps and every other mesh too, and the sun turns.
-fn made(name: &str, motion: &str) -> Arc<Scene> {
-    let mut scene = (aquifer_scenes::by_name(name).expect("a built-in scene").make)();
-    for node in 0..scene.nodes.len() {
-        let it = &scene.nodes[node];
-        let emits =
-            it.mesh.is_some_and(|mesh| scene.meshes[mesh as usize].materials.iter().any(|&id| scene.materials[id as usize].emits()));
-        let thing = it.light.is_some() || emits || (it.mesh.is_some() && node % 2 == 1);
-        if motion == "still" || !(it.camera.is_some() || (motion == "all moves" && thing)) {
-            continue;
-        }
-        let way = Quat::from_rotation_y(node as f32) * Vec3::X * PACE;
-        let (place, turn) = (it.translation, it.rotation);
-        let tracks = [
-            Some(Track::Translation(vec![place, place + way])),
-            it.light.map(|_| Track::Rotation(vec![turn, Quat::from_rotation_y(0.2) * turn])),
-        ];
-        let channel = |track| Channel { node: node as u32, track, times: vec![0.0, 1.0], interpolation: Interpolation::Linear };
-        scene.animation.extend(tracks.into_iter().flatten().map(channel));
-    }
-    Arc::new(scene.finish().unwrap_or_else(|error| panic!("{name}: {error}")))
 }

@@ -3,6 +3,7 @@
 pub mod cost;
 pub mod evidence;
 pub mod leaving_out;
+pub mod motion;
 pub mod references;
 pub mod seeds;
 

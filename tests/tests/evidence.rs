@@ -206,6 +206,62 @@ fn the_table_of_graphs_held_against_themselves_is_its_evidence() {
     });
 }
 
+/// Every graph on every scene: with passes and arrays kept no bit changes; where one does with everything kept, it is listed.
+#[test]
+fn the_table_of_what_leaving_out_changes_is_its_evidence() {
+    let evidence: Value = serde_json::from_str(&read("docs/evidence/leaving_out.json")).expect("the evidence is JSON");
+    let rows = evidence["rows"].as_array().expect("rows");
+    let graphs = aquifer_graphs::files();
+    for (graph, scene) in graphs.iter().flat_map(|(graph, _)| aquifer_scenes::all().iter().map(move |scene| (graph, scene.name))) {
+        let graph = graph.trim_end_matches(".toml");
+        let found = rows.iter().any(|row| text(row, "graph") == graph && text(row, "scene") == scene);
+        assert!(found, "{graph} on {scene} was not tried");
+    }
+    assert!(rows.iter().all(|row| row["with resources"].is_null()), "the same shaders make other bits");
+    let changed: Vec<&Value> = rows.iter().filter(|row| !row["with everything"].is_null()).collect();
+    let line = |row: &&Value| {
+        let found = &row["with everything"];
+        let agree = if row["means agree"] == true { "agree" } else { "**differ**" };
+        format!(
+            "| {} on {} | `{}` | {} | {agree} |",
+            text(row, "graph"),
+            text(row, "scene"),
+            text(found, "resource"),
+            number(found, "ulps")
+        )
+    };
+    let table: Vec<String> = changed.iter().map(line).collect();
+    let page = read("docs/leaving_out.md");
+    let shown: Vec<&str> = page.lines().filter(|line| line.starts_with("| ") && line.contains(" on ")).collect();
+    assert_eq!(shown, table, "docs/leaving_out.md should hold:\n{}", table.join("\n"));
+    let sentence = format!("{} of {} pairs are bit-identical", rows.len() - changed.len(), rows.len());
+    assert!(page.contains(&sentence), "docs/leaving_out.md should say: {sentence}");
+}
+
+#[test]
+fn the_table_of_what_leaving_out_saves_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" MB | ");
+    assert_table("docs/leaving_out.md", "docs/evidence/leaving_out_cost.json", shown, |row| {
+        let megabytes = |way: &str| number(&row["bytes"], way) / 1e6;
+        let (frame, ratio) = (&row["frame ms"], &row["ratio"]);
+        format!(
+            "| `{}` | {} | {:.2} MB | {:.2} MB | {:.1} | {:.1} | {:.2} ({:.2} to {:.2}) | {}, {}, {} |",
+            text(row, "graph"),
+            text(row, "scene"),
+            megabytes("needed"),
+            megabytes("all"),
+            number(&frame["needed"], "median"),
+            number(&frame["all"], "median"),
+            number(ratio, "median"),
+            number(ratio, "low"),
+            number(ratio, "high"),
+            number(row, "ports"),
+            number(row, "arrays"),
+            number(row, "pieces")
+        )
+    });
+}
+
 #[test]
 fn the_figures_of_the_viewer_are_its_evidence() {
     let evidence: Value = serde_json::from_str(&read("docs/evidence/viewer.json")).expect("the evidence is JSON");
