@@ -1,13 +1,14 @@
 #!/bin/sh
-# Renders figures of docs/restir_gi.md into docs/images: jacobian.jpg, shadow_edges.jpg.
+# Renders the pictures of README and docs/restir_gi.md that show graphs: docs/images/{restir_di,restir_gi,jacobian,shadow_edges}.jpg.
 #
 #     tools/figures.sh [FRAMES]
 #
-# Some minutes on two cores. Pictures are put side by side by ImageMagick's `convert`.
+# FRAMES are those of the last two; 256 take some minutes on two cores. What lies in out/figures already is not rendered again. Pictures are put
+# side by side by ImageMagick's `convert`.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
-frames=${1:-256}
+many=${1:-256}
 command -v convert >/dev/null || {
     echo "figures: needs ImageMagick's convert (apt install imagemagick)" >&2
     exit 1
@@ -16,41 +17,63 @@ cargo build --quiet -p aquifer
 out=out/figures
 mkdir -p "$out" docs/images
 
-# render NAME GRAPH SCENE [SETTING …]: the mean over the frames, as NAME.exr and NAME.png.
+# render NAME GRAPH SCENE TRANSPORT SIZE FRAMES [SETTING …]: their mean, as NAME.exr and NAME.png; of frames A..B the last by itself, as NAME.png.
 render() {
-    name=$1 graph=$2 scene=$3
-    shift 3
+    name=$1 graph=$2 scene=$3 transport=$4 size=$5 frames=$6
+    shift 6
     settings=
     for setting in "$@"; do settings="$settings --set $setting"; done
-    [ ! -e "$out/$name.exr" ] || return 0
-    # shellcheck disable=SC2086 # settings are words
-    target/debug/aquifer render "$graph" --scene "$scene" --transport indirect:2 --size 192x108 --frames "$frames" $settings \
-        -o "$out/$name.png" -o "$out/$name.exr"
+    [ ! -e "$out/$name.png" ] || return 0
+    case $frames in
+    *..*) files="-o $out/$name-####.png" ;;
+    *) files="-o $out/$name.exr -o $out/$name.png" ;;
+    esac
+    # shellcheck disable=SC2086 # settings and files are words
+    target/debug/aquifer render "$graph" --scene "$scene" --transport "$transport" --size "$size" --frames "$frames" $settings $files
+    case $frames in
+    *..*) mv "$(find "$out" -name "$name-*.png" | sort | tail -1)" "$out/$name.png" && rm -f "$out/$name"-*.png ;;
+    esac
 }
 
-# beside NAME PICTURE …: twice as large, side by side.
+# beside PERCENT PICTURE …: side by side, so much enlarged, as one row.
 beside() {
-    name=$1
+    percent=$1
     shift
-    convert "$@" -filter point -resize 200% -bordercolor white -border 2 +append -quality 90 "docs/images/$name.jpg"
+    convert "$@" -filter point -resize "$percent%" -bordercolor white -border 2 +append miff:-
 }
+
+# README: direct light of many lights, mean of twelve frames.
+for graph in light_sampling restir_di restir_di_unbiased; do
+    render "many_$graph" "$graph" many_lights direct 384x216 12
+done
+beside 100 "$out/many_light_sampling.png" "$out/many_restir_di.png" "$out/many_restir_di_unbiased.png" |
+    convert miff:- -quality 88 docs/images/restir_di.jpg
+
+# The 33rd frame of ReSTIR GI, between path tracing of two samples a pixel and of many.
+for scene in cornell sunlit_wall; do
+    render "${scene}_two" path_tracer_indirect "$scene" indirect:2 160x90 0..1 path_tracer.samples=2
+    render "${scene}_frame" restir_gi_unbiased "$scene" indirect:2 160x90 0..33
+    render "${scene}_truth" path_tracer_indirect "$scene" indirect:2 160x90 "$many" path_tracer.samples=8
+    beside 200 "$out/${scene}_two.png" "$out/${scene}_frame.png" "$out/${scene}_truth.png" >"$out/$scene.miff"
+done
+convert "$out/cornell.miff" "$out/sunlit_wall.miff" -append -quality 90 docs/images/restir_gi.jpg
 
 # Ouyang et al. 2021, figure 7: the Jacobian of reconnection.
-render wall_truth path_tracer_indirect sunlit_wall path_tracer.samples=8
-render wall_on restir_gi_unbiased sunlit_wall
-render wall_off restir_gi_unbiased sunlit_wall spatial.jacobian=off temporal.jacobian=off
-render wall_inverted restir_gi_unbiased sunlit_wall spatial.jacobian=inverted temporal.jacobian=inverted
-beside jacobian "$out/wall_truth.png" "$out/wall_on.png" "$out/wall_off.png" "$out/wall_inverted.png"
+render wall_truth path_tracer_indirect sunlit_wall indirect:2 192x108 "$many" path_tracer.samples=8
+render wall_on restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many"
+render wall_off restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" spatial.jacobian=off temporal.jacobian=off
+render wall_inverted restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" spatial.jacobian=inverted temporal.jacobian=inverted
+beside 150 "$out/wall_truth.png" "$out/wall_on.png" "$out/wall_off.png" "$out/wall_inverted.png" |
+    convert miff:- -quality 90 docs/images/jacobian.jpg
 
 # Figure 9: bias at shadow edges, as the relative difference of luminance from path tracing: blue too dark, red too bright.
-render box_truth path_tracer_indirect cornell path_tracer.samples=8
-render box_unbiased restir_gi_unbiased cornell
-render box_untested restir_gi_unbiased cornell slots.visibility=untested
-for name in box_unbiased box_untested; do
-    target/debug/aquifer diff "$out/$name.exr" "$out/box_truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
+render box_truth path_tracer_indirect cornell indirect:2 192x108 "$many" path_tracer.samples=8
+render box_unbiased restir_gi_unbiased cornell indirect:2 192x108 "$many"
+render box_untested restir_gi_unbiased cornell indirect:2 192x108 "$many" slots.visibility=untested
+for name in wall_on wall_off wall_inverted box_unbiased box_untested; do
+    truth=${name%_*}_truth
+    target/debug/aquifer diff "$out/$name.exr" "$out/$truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
 done
-beside shadow_edges "$out/box_truth.png" "$out/box_unbiased-difference.png" "$out/box_untested-difference.png"
-for name in wall_on wall_off wall_inverted; do
-    target/debug/aquifer diff "$out/$name.exr" "$out/wall_truth.exr" >"$out/$name.txt"
-done
-grep -H -i mean "$out"/*.txt
+beside 200 "$out/box_truth.png" "$out/box_unbiased-difference.png" "$out/box_untested-difference.png" |
+    convert miff:- -quality 90 docs/images/shadow_edges.jpg
+grep -H "pixels, mean" "$out"/*.txt
