@@ -24,6 +24,7 @@ use aquifer_tests::{
     evidence::{Evidence, told},
     motion::gliding,
     seeds::{SIDE, add_seeds, path_traced_film},
+    vanishing::lamps,
 };
 use serde_json::json;
 use std::{
@@ -49,24 +50,33 @@ struct Subject {
     graph: &'static str,
     settings: &'static [&'static str],
     scenes: &'static [Lit],
-    motions: [&'static str; 2],
     rules: &'static [&'static str],
     /// Of eight paths each.
     reference_frames: u32,
     test: fn() -> BlockTest,
 }
 
-/// A scene, the paths that count, what fills slots of both sides, and of ours.
+/// A scene and how it moves, the paths that count, what fills slots of both sides, and of ours.
 struct Lit {
     scene: &'static str,
+    motions: &'static [&'static str],
     transport: &'static str,
     slots: &'static str,
     ours: &'static str,
 }
 
-const fn lit(scene: &'static str, transport: &'static str, slots: &'static str, ours: &'static str) -> Lit {
-    Lit { scene, transport, slots, ours }
+const fn direct(scene: &'static str, motions: &'static [&'static str], slots: &'static str) -> Lit {
+    Lit { scene, motions, transport: "direct", slots, ours: "" }
 }
+
+const fn indirect(scene: &'static str, transport: &'static str, slots: &'static str, ours: &'static str) -> Lit {
+    Lit { scene, motions: &["still", "camera moves"], transport, slots, ours }
+}
+
+const STILL_AND_MOVING: &[&str] = &["still", "all moves"];
+/// `LAMPS`: one goes out and one comes up at the frame that is compared.
+const SWITCHED: &[&str] = &["lamps switch"];
+const LAMPS: &str = "lamps";
 
 /// Where a sun is among few lights, drawing them by power gives it nearly all samples, and what the lamps light is noise.
 const EVENLY: &str = "proposal = 'uniform'\n";
@@ -79,12 +89,12 @@ const SUBJECTS: [Subject; 2] = [
         graph: "restir_di_unbiased",
         settings: &["spatial.radius=4.0", "spatial.rows=0.0"],
         scenes: &[
-            lit("cornell", "direct", "", ""),
-            lit("many_lights", "direct", "", ""),
-            lit("sun_room", "direct", EVENLY, ""),
-            lit("glossy", "direct", "", ""),
+            direct("cornell", STILL_AND_MOVING, ""),
+            direct("many_lights", STILL_AND_MOVING, ""),
+            direct("sun_room", STILL_AND_MOVING, EVENLY),
+            direct("glossy", STILL_AND_MOVING, ""),
+            direct(LAMPS, SWITCHED, ""),
         ],
-        motions: ["still", "all moves"],
         rules: &["pairwise", "balance", "contribution"],
         reference_frames: 512,
         // 0.2 % of the whole, shown as equivalence; 1 % of every block that is resolved to 0.3 %.
@@ -101,13 +111,12 @@ const SUBJECTS: [Subject; 2] = [
         graph: "restir_gi_unbiased",
         settings: &["spatial.radius=4.0", "spatial.rows=0.0", "initial.candidates=8"],
         scenes: &[
-            lit("cornell", "indirect:2", "", ""),
-            lit("glossy", "indirect:2", "", EXACT),
-            lit("door_ajar", "indirect:2", "", EXACT),
-            lit("sun_room", "indirect:2", EVENLY, EXACT),
-            lit("cornell", "indirect:3", "", ""),
+            indirect("cornell", "indirect:2", "", ""),
+            indirect("glossy", "indirect:2", "", EXACT),
+            indirect("door_ajar", "indirect:2", "", EXACT),
+            indirect("sun_room", "indirect:2", EVENLY, EXACT),
+            indirect("cornell", "indirect:3", "", ""),
         ],
-        motions: ["still", "camera moves"],
         rules: &["pairwise", "contribution"],
         reference_frames: 1024,
         // 0.5 % of the whole, shown as equivalence; 2 % of every block that is resolved to 0.7 %.
@@ -135,7 +144,7 @@ struct Case {
 
 impl Subject {
     fn cases(&'static self) -> Vec<Case> {
-        let of = |lit| self.motions.iter().flat_map(move |motion| self.rules.iter().map(move |mis| Case { lit, motion, mis }));
+        let of = |lit: &'static Lit| lit.motions.iter().flat_map(move |motion| self.rules.iter().map(move |mis| Case { lit, motion, mis }));
         self.scenes.iter().flat_map(of).collect()
     }
 }
@@ -212,7 +221,7 @@ impl Measuring<'_> {
     /// Adds seeds, at most up to `goal`, and writes what all of them show.
     fn part(&self, goal: u64, mut evidence: Evidence) -> End {
         let Case { lit, motion, mis } = self.case;
-        let scene = gliding(lit.scene, motion);
+        let scene = if lit.scene == LAMPS { lamps(FRAME as f32 * STEP) } else { gliding(lit.scene, motion) };
         let moving = View { step: STEP, ..View::default() };
         let name = format!("{}-{}-{}-{motion}", self.subject.name, lit.scene, lit.transport).replace([' ', ':'], "_");
         let kept = self.folder.join(format!("{name}-{mis}.json"));

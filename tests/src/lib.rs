@@ -6,6 +6,7 @@ pub mod leaving_out;
 pub mod motion;
 pub mod references;
 pub mod seeds;
+pub mod vanishing;
 
 use aquifer_graph::{Document, Graph, Needs, NeedsAll, Shelf, Source};
 use aquifer_lab::{capture::Capture, film::Film};
