@@ -63,17 +63,21 @@ render wall_truth path_tracer_indirect sunlit_wall indirect:2 192x108 "$many" pa
 render wall_on restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many"
 render wall_off restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" spatial.jacobian=off temporal.jacobian=off
 render wall_inverted restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" spatial.jacobian=inverted temporal.jacobian=inverted
-beside 150 "$out/wall_truth.png" "$out/wall_on.png" "$out/wall_off.png" "$out/wall_inverted.png" |
-    convert miff:- -quality 90 docs/images/jacobian.jpg
 
-# Figure 9: bias at shadow edges, as the relative difference of luminance from path tracing: blue too dark, red too bright.
+# Figure 9: bias at shadow edges.
 render box_truth path_tracer_indirect cornell indirect:2 192x108 "$many" path_tracer.samples=8
 render box_unbiased restir_gi_unbiased cornell indirect:2 192x108 "$many"
 render box_untested restir_gi_unbiased cornell indirect:2 192x108 "$many" slots.visibility=untested
-for name in wall_on wall_off wall_inverted box_unbiased box_untested; do
+render box_biased restir_gi cornell indirect:2 192x108 "$many"
+
+# Relative differences of luminance from path tracing, means of 4×4 pixels: blue too dark, red too bright.
+for name in wall_on wall_off wall_inverted box_unbiased box_untested box_biased; do
     truth=${name%_*}_truth
     target/debug/aquifer diff "$out/$name.exr" "$out/$truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
+    convert "$out/$name-difference.png" -filter box -resize 25% -filter point -resize 400% "$out/$name-bias.png"
 done
-beside 200 "$out/box_truth.png" "$out/box_unbiased-difference.png" "$out/box_untested-difference.png" |
+beside 150 "$out/wall_truth.png" "$out/wall_on-bias.png" "$out/wall_off-bias.png" "$out/wall_inverted-bias.png" |
+    convert miff:- -quality 90 docs/images/jacobian.jpg
+beside 150 "$out/box_truth.png" "$out/box_unbiased-bias.png" "$out/box_untested-bias.png" "$out/box_biased-bias.png" |
     convert miff:- -quality 90 docs/images/shadow_edges.jpg
 grep -H "pixels, mean" "$out"/*.txt
