@@ -91,3 +91,15 @@ fn lamps_direct() {
 fn textured_direct() {
     compare_scene(&scene("textured"), "textured", "direct", &[], 128, &coarse());
 }
+
+/// A sun, a spot and point lights through a window and in a room.
+#[test]
+fn sun_room_direct() {
+    compare_scene(&scene("sun_room"), "sun_room", "direct", &["slots.proposal=uniform"], 512, &coarse());
+}
+
+/// An environment.
+#[test]
+fn outdoor_direct() {
+    compare_scene(&scene("outdoor"), "outdoor", "direct", &[], 128, &coarse());
+}
