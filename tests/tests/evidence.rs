@@ -234,6 +234,30 @@ fn the_table_of_what_leaving_out_changes_is_its_evidence() {
 }
 
 #[test]
+fn the_table_of_what_leaving_out_saves_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" MB | ");
+    assert_table("docs/leaving_out.md", "docs/evidence/leaving_out_cost.json", shown, |row| {
+        let megabytes = |way: &str| number(&row["bytes"], way) / 1e6;
+        let (frame, ratio) = (&row["frame ms"], &row["ratio"]);
+        format!(
+            "| `{}` | {} | {:.2} MB | {:.2} MB | {:.1} | {:.1} | {:.2} ({:.2} to {:.2}) | {}, {}, {} |",
+            text(row, "graph"),
+            text(row, "scene"),
+            megabytes("needed"),
+            megabytes("all"),
+            number(&frame["needed"], "median"),
+            number(&frame["all"], "median"),
+            number(ratio, "median"),
+            number(ratio, "low"),
+            number(ratio, "high"),
+            number(row, "ports"),
+            number(row, "arrays"),
+            number(row, "pieces")
+        )
+    });
+}
+
+#[test]
 fn the_figures_of_the_viewer_are_its_evidence() {
     let evidence: Value = serde_json::from_str(&read("docs/evidence/viewer.json")).expect("the evidence is JSON");
     let (pace, memory) = (&evidence["pace"]["found"], &evidence["memory"]["found"]);
