@@ -143,6 +143,16 @@ fn the_table_of_the_light_change_is_its_evidence() {
     });
 }
 
+#[test]
+fn the_table_of_bias_where_all_moves_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| ") && !line.starts_with("| `") && line.contains(" validation |");
+    assert_table("docs/restir_gi.md", "docs/evidence/moving_bias.json", shown, |row| {
+        let cell = |found: &Value| format!("{:+.1} ± {:.1}", number(found, "bias %"), number(found, "standard error %"));
+        let cells: Vec<String> = row["frames"].as_array().expect("frames").iter().map(cell).collect();
+        format!("| {} | {} validation | {} |", text(row, "scene"), text(row, "validation"), cells.join(" | "))
+    });
+}
+
 /// What rows have under a key, each once.
 fn names<'a>(rows: &'a [Value], key: &str) -> Vec<&'a str> {
     let mut found = Vec::new();
