@@ -30,19 +30,6 @@ const REFERENCE_SEEDS: u64 = 1024;
 /// Surfaces are diffuse, so that light kept at sample points is exact but for motion; sunlit_wall has a few that are not, and its figures hold that too.
 const SCENES: [&str; 2] = ["cornell", "sunlit_wall"];
 const PLAIN: &str = "extends = 'restir_gi_unbiased.toml'\ntransport = 'indirect:2'\n";
-/// What `restir_gi_validated` adds to `restir_gi`.
-const VALIDATION: &str = "[pass.initial]
-in.previous_surface = 'gbuffer_traced.surface@prev'
-in.motion = 'gbuffer_traced.motion'
-in.history = 'temporal.reservoir@prev'
-set.validate_every = 6
-[pass.temporal]
-in.stale = 'initial.stale'
-set.spread = 1
-[pass.spatial]
-in.stale = 'initial.stale'
-set.spread = 1
-";
 const TRACED: &str = "extends = 'path_tracer.toml'\ntransport = 'indirect:2'\noutput = 'path_tracer.color'\n[pass.accumulate]\nremove = true\n[pass.tonemap]\nremove = true\n";
 
 fn main() {
@@ -56,7 +43,7 @@ fn main() {
     for name in SCENES {
         let scene = gliding(name, "all moves");
         let truth = FRAMES.map(|frame| truth(&context, &scene, frame));
-        for (validation, graph) in [("without", PLAIN.to_owned()), ("with", format!("{PLAIN}{VALIDATION}"))] {
+        for (validation, graph) in [("without", PLAIN.to_owned()), ("with", format!("{PLAIN}{}", validation()))] {
             let found = trace(&context, &scene, &graph);
             let both = FRAMES.iter().zip(found.iter().zip(&truth));
             let rows: Vec<Value> = both.map(|(frame, (ours, truth))| told(*frame, ours, truth)).collect();
@@ -64,6 +51,12 @@ fn main() {
             evidence.put(json!({ "scene": name, "validation": validation }), json!({ "seeds": SEEDS, "frames": rows }));
         }
     }
+}
+
+/// What `restir_gi_validated` adds to the graph that it extends.
+fn validation() -> &'static str {
+    let (_, text) = aquifer_graphs::files().into_iter().find(|(name, _)| *name == "restir_gi_validated.toml").expect("a built-in graph");
+    &text[text.find("[pass.").expect("it sets something of passes")..]
 }
 
 fn told(frame: u32, ours: &Moments, truth: &Moments) -> Value {

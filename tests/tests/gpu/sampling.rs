@@ -95,66 +95,55 @@ fn draw(bits: vec4<u32>) -> vec2<f32> {
 fn density(c: vec2<f32>) -> f32 { return FOUR_PI * bsdf_pdf(it(), view(), direction_of(c)); }
 ";
 
-/// What BSDF rays meet of half of Cornell's lamp, by its uv, from where nothing hides it: a ray for each point of the integral would be more rounds of
-/// loops than lavapipe runs.
+/// What BSDF rays from `POSITION`, seen from `VIEW`, meet of light `light()`.
 const BSDF_RAY: &str = "
-import package::bsdf::{Bsdf};
-import package::frame::frame::{NOW};
-import package::slot::lights::{arrive, light_of, light_point, uv_of};
-import package::slot::trace::{closest};
-import package::surface::{Surface, ray_from, scatter_pdf, scatter_sample};
-fn at() -> Surface {
-    var s: Surface;
-    s.position = vec3<f32>(0.0, 1.5, 0.4);
-    s.view = normalize(vec3<f32>(0.3, 1.0, 0.2));
-    s.normal = vec3<f32>(0.0, 1.0, 0.0);
-    s.geometric = s.normal;
-    s.size = 1.0;
-    s.bsdf = Bsdf(vec3<f32>(0.5), 0.0, vec3<f32>(0.04), 1.0, 0.3);
-    return s;
-}
-fn draw(bits: vec4<u32>) -> vec2<f32> {
-    let drawn = scatter_sample(at(), unit(bits).xyz);
-    if (drawn.pdf <= 0.0) { return vec2<f32>(-1.0); }
-    let hit = closest(ray_from(at(), drawn.direction), NOW);
-    if (light_of(hit) != 1u) { return vec2<f32>(-1.0); }
-    return uv_of(hit, drawn.direction);
-}
-fn density(c: vec2<f32>) -> f32 {
-    let arrival = arrive(light_point(1u, c, NOW), at().position);
-    return scatter_pdf(at(), arrival.direction) * arrival.jacobian;
-}
-";
-
-/// The same of the sky, from above everything that could hide it, by the direction that its uv stand for: by uv the density is spikes, as narrow as the texels
-/// beside the sun. How density by uv follows from that by direction, the environment's own sampler shows.
-const BSDF_RAY_SKY: &str = "
 import package::base::math::{HUGE};
 import package::bsdf::{Bsdf};
 import package::frame::frame::{NOW};
 import package::scene::geometry::{NONE};
 import package::scene::ray::{Hit};
-import package::slot::lights::{light_of, light_point, uv_of};
+import package::slot::lights::{arrive, light_of, light_point, uv_of};
 import package::slot::trace::{closest};
 import package::surface::{Surface, ray_from, scatter_pdf, scatter_sample};
 fn at() -> Surface {
     var s: Surface;
-    s.position = vec3<f32>(0.0, 1000.0, 0.0);
-    s.view = normalize(vec3<f32>(0.6, 1.0, 0.2));
+    s.position = POSITION;
+    s.view = normalize(VIEW);
     s.normal = vec3<f32>(0.0, 1.0, 0.0);
     s.geometric = s.normal;
     s.size = 1.0;
     s.bsdf = Bsdf(vec3<f32>(0.5), 0.0, vec3<f32>(0.04), 1.0, 0.3);
     return s;
 }
-fn sky() -> u32 { return light_of(Hit(HUGE, NONE, 0u, vec2<f32>(0.0))); }
 fn draw(bits: vec4<u32>) -> vec2<f32> {
     let drawn = scatter_sample(at(), unit(bits).xyz);
     if (drawn.pdf <= 0.0) { return vec2<f32>(-1.0); }
     let hit = closest(ray_from(at(), drawn.direction), NOW);
-    if (light_of(hit) != sky()) { return vec2<f32>(-1.0); }
-    return chart_of(light_point(sky(), uv_of(hit, drawn.direction), NOW).position);
+    if (light_of(hit) != light()) { return vec2<f32>(-1.0); }
+    return chart_of_uv(uv_of(hit, drawn.direction));
 }
+";
+
+/// Half of Cornell's lamp, by its uv, from where nothing hides it: a ray for each point of the integral would be more rounds of loops than lavapipe
+/// runs.
+const OF_LAMP: &str = "
+const POSITION = vec3<f32>(0.0, 1.5, 0.4);
+const VIEW = vec3<f32>(0.3, 1.0, 0.2);
+fn light() -> u32 { return 1u; }
+fn chart_of_uv(uv: vec2<f32>) -> vec2<f32> { return uv; }
+fn density(c: vec2<f32>) -> f32 {
+    let arrival = arrive(light_point(light(), c, NOW), at().position);
+    return scatter_pdf(at(), arrival.direction) * arrival.jacobian;
+}
+";
+
+/// The sky, from above everything that could hide it, by the direction that its uv stand for: by uv the density is spikes, as narrow as the texels beside
+/// the sun. How density by uv follows from that by direction, the environment's own sampler shows.
+const OF_SKY: &str = "
+const POSITION = vec3<f32>(0.0, 1000.0, 0.0);
+const VIEW = vec3<f32>(0.6, 1.0, 0.2);
+fn light() -> u32 { return light_of(Hit(HUGE, NONE, 0u, vec2<f32>(0.0))); }
+fn chart_of_uv(uv: vec2<f32>) -> vec2<f32> { return chart_of(light_point(light(), uv, NOW).position); }
 fn density(c: vec2<f32>) -> f32 { return FOUR_PI * scatter_pdf(at(), direction_of(c)); }
 ";
 
@@ -196,8 +185,8 @@ fn samplers() -> Vec<(String, String, &'static str)> {
         let text = BSDF.replacen("fn it()", &format!("{define}fn it()"), 1);
         all.push((format!("bsdf metallic {metallic} alpha {alpha} cos {cos}"), text, "cornell"));
     }
-    all.push(("BSDF rays on a light".into(), BSDF_RAY.into(), "cornell"));
-    all.push(("BSDF rays on the sky".into(), BSDF_RAY_SKY.into(), "outdoor"));
+    all.push(("BSDF rays on a light".into(), format!("{BSDF_RAY}{OF_LAMP}"), "cornell"));
+    all.push(("BSDF rays on the sky".into(), format!("{BSDF_RAY}{OF_SKY}"), "outdoor"));
     all
 }
 
