@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 . tools/setup.sh
 
 cargo build --quiet -p aquifer
-target/debug/aquifer compare light_sampling restir_di_unbiased --scene many_lights --size 96x54 --warm-up 16 --seeds 8 \
+"${CARGO_TARGET_DIR:-target}/debug/aquifer" compare light_sampling restir_di_unbiased --scene many_lights --size 96x54 --warm-up 16 --seeds 8 \
     --reference-samples 2048 --cache out/cache -o out/demo
 
 cat <<'END'

@@ -36,15 +36,15 @@ item=${1:-external}
 case $item in
 external)
     cargo build --quiet -p aquifer
-    "${PYTHON:-python3}" tests/external/evidence.py target/debug/aquifer out/evidence "$@"
+    "${PYTHON:-python3}" tests/external/evidence.py "${CARGO_TARGET_DIR:-target}/debug/aquifer" out/evidence "$@"
     ;;
 held_out)
     cargo build --quiet -p aquifer
-    "${PYTHON:-python3}" tests/external/held_out.py target/debug/aquifer out/evidence/held_out "$@"
+    "${PYTHON:-python3}" tests/external/held_out.py "${CARGO_TARGET_DIR:-target}/debug/aquifer" out/evidence/held_out "$@"
     ;;
 compare_aa)
     cargo build --quiet -p aquifer
-    tools/evidence/compare_aa.sh target/debug/aquifer docs/evidence/compare_aa.json "$(git rev-parse HEAD)" "$(date -u +%F)"
+    tools/evidence/compare_aa.sh "${CARGO_TARGET_DIR:-target}/debug/aquifer" docs/evidence/compare_aa.json "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
 viewer)
     for what in pace "memory ${1:-30}"; do
@@ -73,7 +73,7 @@ leaving_out)
     ;;
 stress | long)
     cargo build --quiet -p aquifer
-    cargo run --quiet -p aquifer-tests --example stress_evidence -- "$item" target/debug/aquifer "docs/evidence/$item.json" \
+    cargo run --quiet -p aquifer-tests --example stress_evidence -- "$item" "${CARGO_TARGET_DIR:-target}/debug/aquifer" "docs/evidence/$item.json" \
         "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
 *)

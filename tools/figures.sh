@@ -29,7 +29,7 @@ render() {
     *) files="-o $out/$name.exr -o $out/$name.png" ;;
     esac
     # shellcheck disable=SC2086 # settings and files are words
-    target/debug/aquifer render "$graph" --scene "$scene" --transport "$transport" --size "$size" --frames "$frames" $settings $files
+    "${CARGO_TARGET_DIR:-target}/debug/aquifer" render "$graph" --scene "$scene" --transport "$transport" --size "$size" --frames "$frames" $settings $files
     case $frames in
     *..*) mv "$(find "$out" -name "$name-*.png" | sort | tail -1)" "$out/$name.png" && rm -f "$out/$name"-*.png ;;
     esac
@@ -73,7 +73,7 @@ render box_biased restir_gi cornell indirect:2 192x108 "$many"
 # Relative differences of luminance from path tracing, means of 4×4 pixels: blue too dark, red too bright.
 for name in wall_on wall_off wall_inverted box_unbiased box_untested box_biased; do
     truth=${name%_*}_truth
-    target/debug/aquifer diff "$out/$name.exr" "$out/$truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
+    "${CARGO_TARGET_DIR:-target}/debug/aquifer" diff "$out/$name.exr" "$out/$truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
     convert "$out/$name-difference.png" -filter box -resize 25% -filter point -resize 400% "$out/$name-bias.png"
 done
 beside 150 "$out/wall_truth.png" "$out/wall_on-bias.png" "$out/wall_off-bias.png" "$out/wall_inverted-bias.png" |

@@ -22,14 +22,14 @@ trap 'kill $viewer $server 2>/dev/null || true' EXIT INT TERM
 sleep 2
 
 # Without a display, the message names what works without one.
-if env -u DISPLAY -u WAYLAND_DISPLAY target/debug/aquifer view 2>"$folder/no_display.txt"; then
+if env -u DISPLAY -u WAYLAND_DISPLAY "${CARGO_TARGET_DIR:-target}/debug/aquifer" view 2>"$folder/no_display.txt"; then
     echo "view_check: no display, and no failure" >&2
     exit 1
 fi
 grep -q 'aquifer compare' "$folder/no_display.txt"
 
 export DISPLAY="$display"
-target/debug/aquifer -v view path_tracer restir_di --scene cornell --transport direct >"$folder/log.txt" 2>&1 &
+"${CARGO_TARGET_DIR:-target}/debug/aquifer" -v view path_tracer restir_di --scene cornell --transport direct >"$folder/log.txt" 2>&1 &
 viewer=$!
 
 # Waits for a line of the log: seconds, words.
