@@ -5,8 +5,9 @@
 //! ```
 //!
 //! FOLDER keeps references and what seeds have shown so far: a run that was stopped goes on where it was. Seeds are added to all rows in turn, twice as
-//! many each time, until a row is resolved or has failed, has its 4,000 seeds, or the time is over. Each part of a row is a process of its own: lavapipe
-//! keeps some memory of every dispatch for as long as a process lives.
+//! many each time, until a row is resolved or has failed, has its 4,000 seeds, or the time is over. Rows that FILE holds as settled are left alone, of
+//! whichever commit they are: who wants them anew deletes them there. Each part of a row is a process of its own: lavapipe keeps some memory of every
+//! dispatch for as long as a process lives.
 
 use aquifer_lab::{
     film::Film,
@@ -26,7 +27,7 @@ use aquifer_tests::{
     seeds::{SIDE, add_seeds, path_traced_film},
     vanishing::lamps,
 };
-use serde_json::json;
+use serde_json::{Value, json};
 use std::{
     fs,
     path::Path,
@@ -221,6 +222,11 @@ impl Measuring<'_> {
     /// Adds seeds, at most up to `goal`, and writes what all of them show.
     fn part(&self, goal: u64, mut evidence: Evidence) -> End {
         let Case { lit, motion, mis } = self.case;
+        let key = json!({ "scene": lit.scene, "transport": lit.transport, "motion": motion, "mis": mis });
+        let is_settled = |row: &Value| row["verdict"] != Verdict::NotResolved.to_string() || row["seeds"].as_u64() >= Some(MOST_SEEDS);
+        if evidence.row(&key).is_some_and(is_settled) {
+            return End::Settled;
+        }
         let scene = if lit.scene == LAMPS { lamps(FRAME as f32 * STEP) } else { gliding(lit.scene, motion) };
         let moving = View { step: STEP, ..View::default() };
         let name = format!("{}-{}-{}-{motion}", self.subject.name, lit.scene, lit.transport).replace([' ', ':'], "_");
@@ -249,7 +255,6 @@ impl Measuring<'_> {
         if moments.count() > 0 {
             let found = judged(&moments);
             eprintln!("{}, {}, {motion}, {mis}, {} seeds: {found}", lit.scene, lit.transport, moments.count());
-            let key = json!({ "scene": lit.scene, "transport": lit.transport, "motion": motion, "mis": mis });
             let mut row = told(&found);
             row["seeds"] = json!(moments.count());
             row["frame"] = json!(FRAME);

@@ -23,7 +23,12 @@ impl Evidence {
 
     /// Is there a row of this key?
     pub fn has(&self, key: &Value) -> bool {
-        self.place(key).is_some()
+        self.row(key).is_some()
+    }
+
+    /// The row of this key, whichever commit it was made with.
+    pub fn row(&self, key: &Value) -> Option<&Value> {
+        self.place(key).map(|at| &self.rows[at])
     }
 
     fn place(&self, key: &Value) -> Option<usize> {

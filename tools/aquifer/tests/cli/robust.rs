@@ -43,22 +43,30 @@ fn films() -> (tempfile::TempDir, Vec<u8>, Duration) {
 #[cfg(unix)]
 #[test]
 fn killed_at_any_moment_a_file_is_old_or_new() {
-    const KILLS: u32 = 50;
+    const KILLS: u64 = 60;
     let (folder, whole, took) = films();
     let out = folder.path().join("out.exr");
     let old = b"what was there before".to_vec();
     let [mut left_old, mut left_new] = [0, 0];
+    // Every other kill is around the moment of the rename, which is found as it goes: a program takes longer or less long as other work comes and
+    // goes. The rest are at any moment before.
+    let mut end = took;
+    let mut rng = SplitMix::new(0);
     for kill in 0..KILLS {
         std::fs::write(&out, &old).expect("a file");
+        let near = kill % 2 == 0;
         let mut child = merge(folder.path()).spawn().expect("it runs");
-        // Later and later, to after the end.
-        std::thread::sleep(took * (kill + 1) / (KILLS - 10));
+        std::thread::sleep(if near { end } else { end.mul_f64(rng.uniform()) });
         child.kill().expect("SIGKILL reaches a child");
         child.wait().expect("it ends");
-        match std::fs::read(&out).expect("there is always a file") {
-            bytes if bytes == old => left_old += 1,
-            bytes if bytes == whole => left_new += 1,
+        let is_new = match std::fs::read(&out).expect("there is always a file") {
+            bytes if bytes == old => false,
+            bytes if bytes == whole => true,
             bytes => panic!("kill {kill} left {} bytes that are neither old nor new", bytes.len()),
+        };
+        *if is_new { &mut left_new } else { &mut left_old } += 1;
+        if near {
+            end = end.mul_f64(if is_new { 0.8 } else { 1.25 });
         }
     }
     let mut files = names(folder.path());
