@@ -37,6 +37,9 @@ struct Params {
 /// Candidates a pixel.
 /// @range 1 1024
 override candidates: u32 = 32u;
+/// Samples a pixel that are drawn so, each of candidates of its own, and tested where slot `visibility` tests them; one is kept.
+/// @range 1 64
+override winners: u32 = 1u;
 /// Frames from one validation to the next; 0: none.
 /// @range 0 1024
 /// @unbiased 0
@@ -76,7 +79,7 @@ override redraw: bool = false;
                 draws = lost && redraw;
             }
         }
-        if (draws) { kept = resample(s, candidates, &rng); }
+        if (draws) { kept = resample(s, candidates, winners, &rng); }
     }
     reservoir[at] = kept;
     @if(moving_lights || moving_objects) { stale[at] = u32(lost); }

@@ -104,6 +104,10 @@ pub fn path_traced(context: &Context, scene: &Arc<Scene>, transport: &str, frame
 
 /// The image of a graph with a path tracer, 64×36, from `frames` frames of eight paths.
 pub fn path_traced_film(context: &Context, scene: &Arc<Scene>, graph: &str, frames: u32, view: View) -> Film {
-    let parts = Parts { settings: &["path_tracer.samples=8"], seed: 1 << 40, view, ..Parts::new(scene, graph) };
-    parts.film(context, frames)
+    path_traced_parts(scene, graph, view).film(context, frames)
+}
+
+/// What makes it: seeds that nothing else has.
+pub fn path_traced_parts<'a>(scene: &'a Arc<Scene>, graph: &'a str, view: View) -> Parts<'a> {
+    Parts { settings: &["path_tracer.samples=8"], seed: 1 << 40, view, ..Parts::new(scene, graph) }
 }
