@@ -275,7 +275,7 @@ impl Measuring<'_> {
         }
     }
 
-    /// At the moment of the frame that is compared, with at most half the error that resolves a row: beside itself, whose difference has √2 times that.
+    /// At the moment of the frame that is compared, with at most half the variance that resolves a row: what is resolved beside itself.
     fn reference(&self, scene: &Arc<Scene>, moving: &View, path: &Path) -> Blocks {
         let blocks = |film: &Film| Blocks::of_film(film, SIDE, Quantity::Luminance);
         let film = Film::read(path).unwrap_or_else(|_| {
@@ -284,8 +284,6 @@ impl Measuring<'_> {
                 format!("extends = 'path_tracer.toml'\ntransport = '{}'\n[slots]\n{}", self.case.lit.transport, self.case.lit.slots);
             let mut rolling = path_traced_parts(scene, &graph, held).rolling(self.context);
             let test = (self.subject.test)();
-            let half = 0.5 * std::f64::consts::SQRT_2;
-            let test = BlockTest { overall_error: half * test.overall_error, block_error: half * test.block_error, ..test };
             let begin = Instant::now();
             let mut frames = 0;
             let film = loop {

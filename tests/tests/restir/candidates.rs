@@ -52,6 +52,20 @@ fn a_wrong_mixture_is_found() {
     assert_eq!(found.verdict, Verdict::Failed, "{found}");
 }
 
+/// What light is hidden, and by what, is another for every surface of the box.
+#[test]
+fn several_winners_share_their_light() {
+    let Some(context) = context() else { return };
+    let settings = ["initial.candidates=4", "initial.winners=4"];
+    let found = compare(&context, "cornell", RIS, &settings, &[], 192);
+    assert_eq!(found.verdict, Verdict::Passed, "{found}");
+    // The mean over those that are seen, where it is over all of them.
+    let counts = replaced(module("restir/ris"), "offer(&kept,", "kept.confidence += f32(s.sum > 0.0);\noffer(&kept,");
+    let text = replaced(&counts, "kept.confidence = 1.0;", "kept.sum *= f32(winners) / max(kept.confidence, 1.0);\nkept.confidence = 1.0;");
+    let found = compare(&context, "cornell", RIS, &settings, &[("restir/ris", &text)], 192);
+    assert_eq!(found.verdict, Verdict::Failed, "{found}");
+}
+
 #[test]
 fn presampled_lights_give_direct_light() {
     let Some(context) = context() else { return };
