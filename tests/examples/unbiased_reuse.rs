@@ -93,6 +93,9 @@ const SEEN: &[&str] = &["initial.candidates=8", "initial.winners=8"];
 /// Lamps mirrored by glossy surfaces are seldom drawn by their power: their light would come in few large pieces. And where what is mirrored moves, a
 /// history of confidence c outweighs by up to c what the pixel itself finds there, frame after frame.
 const MET: &[&str] = &["initial.candidates=12", "initial.bsdf_rays=4", "temporal.cap=1"];
+/// Shares of confidence alone leave p̂ / p̂_i unbounded, which between lobes a few degrees wide is thousands, once in thousands of samples: neighbours must
+/// be turned alike.
+const ALIKE: &[&str] = &["spatial.normal=4.0", "temporal.normal=4.0"];
 /// Exact on glossy surfaces too.
 const EXACT: &str = "domain = 'gi_path'\n";
 
@@ -265,7 +268,8 @@ impl Measuring<'_> {
             "extends = '{}.toml'\ntransport = '{}'\n[slots]\nmis = '{mis}'\n{}{}",
             self.subject.graph, lit.transport, lit.slots, lit.ours
         );
-        let settings = [self.subject.settings, lit.settings].concat();
+        let alike = if lit.scene == "glossy" && mis == "contribution" { ALIKE } else { &[] };
+        let settings = [self.subject.settings, lit.settings, alike].concat();
         let parts = Parts { settings: &settings, keep: &["shade.color"], view: moving, ..Parts::new(&scene, &graph) };
         let mut renderer = parts.renderer(self.context);
         while moments.count() < most && Instant::now() < self.end && !settled(&moments) {
