@@ -21,7 +21,8 @@
 # compare_aa: twenty comparisons of graphs with themselves, some minutes; at 5 % one in twenty gives a verdict by chance.
 # Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
-# over. A row wants some 10⁹ rays.
+# over. A row wants some 10⁸ to 10⁹ rays. References and seeds so far are kept beside the tables, so that another machine goes on where one stopped: who
+# changes what these graphs do deletes them, and the rows.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # light_change: error of ReSTIR GI by frame after the sun goes out but for a tenth. moving_bias: bias by frame where all moves. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
@@ -55,7 +56,7 @@ viewer)
 restir_di | restir_gi)
     minutes=${1:-600}
     [ $# -eq 0 ] || shift
-    cargo run --quiet -p aquifer-tests --example unbiased_reuse -- "${item#restir_}" "docs/evidence/$item.json" "out/evidence/$item" \
+    cargo run --quiet -p aquifer-tests --example unbiased_reuse -- "${item#restir_}" "docs/evidence/$item.json" "docs/evidence/$item" \
         "$(git rev-parse HEAD)" "$(date -u +%F)" "$minutes" "$@"
     ;;
 restir_di_cost | restir_gi_cost)

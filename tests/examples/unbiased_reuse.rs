@@ -10,7 +10,7 @@
 //! dispatch for as long as a process lives.
 //!
 //! The film is centred, on both sides: what a pixel sees is the same for every seed. With a jittered film the largest part of the noise is edges and
-//! lamps that some seeds see and others do not, which is nothing about reuse (twelve times the seeds on cornell for the same error).
+//! lamps that some seeds see and others do not, which is nothing about reuse (on cornell 32 seeds had an error of 0.26 %, and have 0.06 %).
 
 use aquifer_lab::{
     film::Film,

@@ -24,7 +24,7 @@ pub struct Pixel {
 /// The first is the receiver of the tests of rules, the same in all frames; the fifth never sees anything: its reservoirs are always empty.
 /// Halves hold all the numbers exactly: some travel in fields that a g-buffer keeps as such.
 pub const PIXELS: [Pixel; 9] = [
-    Pixel { k: 0.375, support: [[0.0625, 0.96875]; 2], alpha: 1.0, beta: [0.75, 0.75], gamma: 0.125, dark: [0.3125, 0.34375] },
+    Pixel { k: 0.375, support: [[0.0625, 0.96875]; 2], alpha: 1.0, beta: [0.75, 0.75], gamma: 0.125, dark: [0.3125, 0.328125] },
     Pixel { k: 1.25, support: [[0.0, 0.75], [0.125, 0.875]], alpha: 1.25, beta: [-0.5, 0.25], gamma: -0.25, dark: [0.34375, 0.4375] },
     Pixel { k: 0.0, support: [[0.25, 1.0], [0.0, 0.8125]], alpha: 0.75, beta: [1.5, 0.5], gamma: 0.25, dark: [0.28125, 0.328125] },
     Pixel { k: 2.0, support: [[0.125, 0.875]; 2], alpha: 1.0, beta: [0.0, 1.0], gamma: 0.0, dark: [0.5, 0.5625] },

@@ -12,7 +12,7 @@ use aquifer_tests::{Parts, context, vanishing::lamps};
 const RESERVOIR: usize = 5;
 
 fn by_the_frame() -> View {
-    View { step: 1.0, ..View::default() }
+    View { step: 1.0, centred: true, ..View::default() }
 }
 
 #[test]
