@@ -37,8 +37,9 @@ struct Params {
 /// Candidates a pixel.
 /// @range 1 1024
 override candidates: u32 = 32u;
-/// Samples a pixel that are drawn so, each of candidates of its own, and tested where slot `visibility` tests them; one is kept.
-/// @range 1 64
+/// Samples a pixel that are drawn so, each of candidates of its own, and tested where slot `visibility` tests them; one is kept. No more than 16:
+/// Mesa's lavapipe ends an invocation's loops after 65,535 rounds, those of candidates and of rays together.
+/// @range 1 16
 override winners: u32 = 1u;
 /// Frames from one validation to the next; 0: none.
 /// @range 0 1024
