@@ -25,7 +25,7 @@ esac
 [ ! -d "fuzz/corpus/$target" ] || cp "fuzz/corpus/$target/"* "$found/corpus/"
 fuzz() {
     cargo "+${NIGHTLY:-nightly}" fuzz run --fuzz-dir fuzz --sanitizer "${SANITIZER:-none}" ${features:+"$features"} "$target" "$@" \
-        -timeout=10 -rss_limit_mb=2048 -max_len=8192
+        -timeout=10 -rss_limit_mb=2048 -max_len=16384
 }
 fuzz "$found/corpus" -- -max_total_time="$seconds" -artifact_prefix="$found/artifacts/" -print_final_stats=1
 rm -rf "$found/smallest"

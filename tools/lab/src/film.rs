@@ -63,6 +63,18 @@ pub enum FilmError {
         /// What it said.
         source: ::exr::error::Error,
     },
+    /// An EXR file that is too short for the image of its header.
+    #[error("`{}`: {} bytes cannot hold {}×{} pixels of {} bytes", path.display(), bytes, size[0], size[1], bytes_per_pixel)]
+    TooShort {
+        /// The file.
+        path: PathBuf,
+        /// How long it is.
+        bytes: u64,
+        /// Pixels across and down.
+        size: [usize; 2],
+        /// Of all channels.
+        bytes_per_pixel: usize,
+    },
     /// The PNG coder failed.
     #[error("`{}`: {source}", path.display())]
     Png {

@@ -116,7 +116,9 @@ impl Store {
     pub fn round(&self, number: u32) -> Option<Round> {
         let round: Round = self.json(&round_name(number))?;
         let takes = round.runs.iter().flatten().flat_map(|run| &run.takes);
-        let whole = takes.into_iter().all(|take| fs::read(self.folder.join(&take.film)).is_ok_and(|bytes| hash(&bytes) == take.hash));
+        let is_here = |take: &Take| Path::new(&take.film).file_name().is_some_and(|name| name == take.film.as_str());
+        let as_kept = |take: &Take| fs::read(self.folder.join(&take.film)).is_ok_and(|bytes| hash(&bytes) == take.hash);
+        let whole = takes.into_iter().all(|take| is_here(take) && as_kept(take));
         whole.then_some(round)
     }
 
@@ -200,6 +202,12 @@ mod tests {
                 && !Round::default().fits(&settled(vec![cell(0)]))
         );
         assert!(settled(vec![cell(1)]).fits(2) && !settled(vec![cell(2)]).fits(2) && !settled(vec![]).fits(2));
+        for elsewhere in ["../s/a.exr", "./a.exr", "..", ""] {
+            let mut round = round.clone();
+            round.runs[0][0].takes[0].film = elsewhere.into();
+            store.keep_round(1, &round).unwrap();
+            assert_eq!(store.round(1), None, "`{elsewhere}` is no film of this folder");
+        }
         let path = folder.path().join("s/a.exr");
         let mut bytes = fs::read(&path).unwrap();
         *bytes.last_mut().unwrap() ^= 1;

@@ -5,11 +5,22 @@ mod order;
 
 use super::{Film, FilmError, channels};
 use crate::atomic;
-use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder, ReadChannels as _,
-    ReadLayers as _, WritableImage as _,
+use exr::{
+    meta::MetaData,
+    prelude::{
+        AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder, ReadChannels as _,
+        ReadLayers as _, WritableImage as _,
+    },
 };
-use std::{fs::File, io::Cursor, path::Path};
+use std::{
+    fs::File,
+    io::{Cursor, Seek},
+    path::Path,
+};
+
+/// Bytes of pixels that a byte of a file can stand for. Deflate makes 1,032 of one at most; other compressions need some 100 bytes for each block of 32
+/// rows, however black it is.
+const LARGEST_RATIO: u64 = 1 << 16;
 
 type FlatLayer = Layer<AnyChannels<FlatSamples>>;
 
@@ -50,7 +61,10 @@ fn layer(film: &Film, path: &Path, packing: Packing) -> Result<FlatLayer, FilmEr
 
 /// Reads the first part; other programs' files need `R`, `G` and `B`, in whatever precision.
 pub(super) fn read(path: &Path) -> Result<Film, FilmError> {
-    let file = File::open(path).map_err(|source| FilmError::Open { path: path.to_owned(), source })?;
+    let opening = |source| FilmError::Open { path: path.to_owned(), source };
+    let mut file = File::open(path).map_err(opening)?;
+    check_length(&file, file.metadata().map_err(opening)?.len(), path)?;
+    file.rewind().map_err(opening)?;
     let mut layer = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -66,6 +80,19 @@ pub(super) fn read(path: &Path) -> Result<Film, FilmError> {
         .map_err(|channel| FilmError::MissingChannel { path: path.to_owned(), channel: channel.to_owned() })?;
     film.check()?;
     Ok(Film { facts, ..film })
+}
+
+/// Memory is asked for by what the header says, before the first pixel is read: so a file of a few bytes must not claim gigabytes.
+fn check_length(file: &File, bytes: u64, path: &Path) -> Result<(), FilmError> {
+    let meta = MetaData::read_from_unbuffered(file, false).map_err(|source| FilmError::Exr { path: path.to_owned(), source })?;
+    for header in &meta.headers {
+        let (size, bytes_per_pixel) = (header.layer_size, header.channels.bytes_per_pixel);
+        let claimed = [size.width(), size.height(), bytes_per_pixel].into_iter().fold(1, |all, part| u64::saturating_mul(all, part as u64));
+        if claimed > bytes.saturating_mul(LARGEST_RATIO) {
+            return Err(FilmError::TooShort { path: path.to_owned(), bytes, size: [size.width(), size.height()], bytes_per_pixel });
+        }
+    }
+    Ok(())
 }
 
 fn take(layer: &mut FlatLayer, name: &str) -> Option<Vec<f32>> {
@@ -117,6 +144,23 @@ mod tests {
         assert_eq!(Film::read(&a).unwrap(), film());
         film().write(&b).unwrap();
         assert_eq!(std::fs::read(&a).unwrap(), std::fs::read(&b).unwrap());
+    }
+
+    #[test]
+    fn a_short_file_that_claims_gigabytes_is_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        Film::new([2, 1], vec![[0.5; 3]; 2]).unwrap().write(&path).unwrap();
+        let mut bytes = std::fs::read(&path).unwrap();
+        let window = bytes.windows(11).position(|at| at == b"dataWindow\0").unwrap();
+        // Name, type and length, then x and y of the first and the last pixel.
+        let last = window + "dataWindow\0box2i\0".len() + 4 + 8;
+        for at in [last, last + 4] {
+            bytes[at..at + 4].copy_from_slice(&29_999_i32.to_le_bytes());
+        }
+        std::fs::write(&path, &bytes).unwrap();
+        let told = Film::read(&path).unwrap_err().to_string();
+        assert!(told.contains("cannot hold 30000×30000 pixels of 12 bytes"), "{told}");
     }
 
     #[test]
