@@ -6,6 +6,7 @@
 #     tools/evidence.sh compare_aa
 #     tools/evidence.sh restir_di [MINUTES] [SCENE …]
 #     tools/evidence.sh restir_gi [MINUTES] [SCENE …]
+#     tools/evidence.sh equal_time di|gi [WxH] [SCENE …]
 #     tools/evidence.sh restir_di_cost
 #     tools/evidence.sh restir_gi_cost
 #     tools/evidence.sh light_change
@@ -23,6 +24,7 @@
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over. A row wants some 10⁸ to 10⁹ rays. References and seeds so far are kept beside the tables, so that another machine goes on where one stopped: who
 # changes what these graphs do deletes them, and the rows.
+# equal_time: a frame of resampling against path tracing in the same time, with the machine to itself; pages are in out/evidence/equal_time.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # light_change: error of ReSTIR GI by frame after the sun goes out but for a tenth. moving_bias: bias by frame where all moves. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
@@ -59,6 +61,14 @@ restir_di | restir_gi)
     cargo run --quiet -p aquifer-tests --example unbiased_reuse -- "${item#restir_}" "docs/evidence/$item.json" "docs/evidence/$item" \
         "$(git rev-parse HEAD)" "$(date -u +%F)" "$minutes" "$@"
     ;;
+equal_time)
+    kind=${1:?usage: tools/evidence.sh equal_time di|gi [WxH] [SCENE …]}
+    size=${2:-$([ "$kind" = di ] && echo 256x144 || echo 64x36)}
+    shift $(($# < 2 ? $# : 2))
+    cargo build --quiet -p aquifer
+    cargo run --quiet -p aquifer-tests --example equal_time -- "${CARGO_TARGET_DIR:-target}/debug/aquifer" docs/evidence/equal_time.json \
+        out/evidence/equal_time "$(git rev-parse HEAD)" "$(date -u +%F)" "$kind" "$size" "$@"
+    ;;
 restir_di_cost | restir_gi_cost)
     subject=${item#restir_}
     cargo run --quiet -p aquifer-tests --example restir_cost -- "${subject%_cost}" "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)"
@@ -78,7 +88,7 @@ stress | long)
         "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
 *)
-    echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, restir_di_cost, restir_gi_cost, light_change," \
+    echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, equal_time, restir_di_cost, restir_gi_cost, light_change," \
         "moving_bias, error_parts, leaving_out, stress, long, viewer" >&2
     exit 2
     ;;
