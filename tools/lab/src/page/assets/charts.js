@@ -2,6 +2,9 @@
 
 const MUTED = "var(--muted)";
 
+/** More slopes than this say nothing. */
+const MOST_GUIDES = 8;
+
 /** Error bars and bands need numbers above zero on logarithmic axes. */
 const positive = (value) => value > 0 && Number.isFinite(value);
 
@@ -51,7 +54,7 @@ function errorAgainstTime(element, points, names, reached) {
   const times = usable.map((p) => p.time), x = logAxis(times.length > 1 && Math.max(...times) > Math.min(...times) ? times : times.flatMap((t) => [t / 2, t * 2]), names.x, across(element));
   const y = logAxis(usable.flatMap((p) => [low(p), high(p)]), names.y);
   const series = [...new Map(usable.map((p) => [p.graph, usable.filter((q) => q.graph === p.graph)])).values()];
-  const guides = series.length > MOST_NAMES ? [] : series.flatMap((s) => slope(s[0], x.domain, s[0].graph));
+  const guides = series.length > MOST_GUIDES ? [] : series.flatMap((s) => slope(s[0], x.domain, s[0].graph));
   const lines = series.filter((s) => s.length > 1).flat(), single = usable.filter((p) => !lines.includes(p));
   show(element, Plot.plot(base(element, {
     x, y,
@@ -94,15 +97,28 @@ function pareto(element, points, names) {
   })));
 }
 
-/** More names than this lie over each other; the pointer still tells. */
-const MOST_NAMES = 8;
-
-/** Names beside points, towards the middle of the plot. */
+/** Names beside points, towards the middle of the plot; what would lie over another is left out, the legend and the pointer still tell. */
 function nameMarks(points, [from, to]) {
-  if (points.length > MOST_NAMES) return [];
   const far = (p) => p.time > from ** 0.4 * to ** 0.6;
-  return [false, true].map((right) => Plot.text(points.filter((p) => far(p) === right), {x: "time", y: "error", text: "name", dx: right ? -9 : 9,
-    textAnchor: right ? "end" : "start", fill: "currentColor", stroke: "var(--card)", strokeWidth: 4}));
+  const taken = [];
+  return [false, true].map((right) => Plot.text(points.filter((p) => far(p) === right), apart(taken, right, {x: "time", y: "error", text: "name",
+    dx: right ? -9 : 9, textAnchor: right ? "end" : "start", fill: "currentColor", stroke: "var(--card)", strokeWidth: 4})));
+}
+
+/** Text within the plot, where no text of `taken` is yet. */
+function apart(taken, right, options) {
+  const [letter, line] = [6, 13];
+  const initializer = (data, facets, {x, y, text}, scales, {width}) => {
+    const free = (i) => {
+      const [at, top, wide] = [scales.x(x.value[i]), scales.y(y.value[i]), 9 + letter * String(text.value[i]).length];
+      const box = right ? [at - wide, at, top] : [at, at + wide, top];
+      const clear = box[0] >= 0 && box[1] <= width && taken.every(([left, end, other]) => box[1] < left || end < box[0] || Math.abs(other - top) >= line);
+      if (clear) taken.push(box);
+      return clear;
+    };
+    return {data, facets: facets.map((facet) => facet.filter(free))};
+  };
+  return {...options, initializer};
 }
 
 /** The first point of every graph. */
