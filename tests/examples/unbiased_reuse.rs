@@ -129,7 +129,7 @@ const SUBJECTS: [Subject; 2] = [
         settings: &["spatial.radius=4.0", "spatial.rows=0.0", "initial.candidates=8"],
         scenes: &[
             indirect("cornell", "indirect:2", "", ""),
-            indirect("glossy", "indirect:2", "", EXACT),
+            Lit { by_contribution: ALIKE, ..indirect("glossy", "indirect:2", "", EXACT) },
             indirect("door_ajar", "indirect:2", "", EXACT),
             indirect("sun_room", "indirect:2", EVENLY, EXACT),
             indirect("cornell", "indirect:3", "", ""),

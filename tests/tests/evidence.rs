@@ -98,6 +98,67 @@ fn the_table_of_unbiased_indirect_light_is_its_evidence() {
     assert_table("docs/restir_gi.md", "docs/evidence/restir_gi.json", |line| VERDICTS.iter().any(|end| line.ends_with(end)), told);
 }
 
+/// Resampling against path tracing at equal time, of one kind of light.
+fn assert_equal_time(page: &str, subject: &str) {
+    let evidence: Value = serde_json::from_str(&read("docs/evidence/equal_time.json")).expect("the evidence is JSON");
+    let times = |found: &Value| {
+        let side = |at: usize| found["interval"][at].as_f64().expect("a number");
+        format!("{:.1} ({:.1} to {:.1})", number(found, "value"), side(0), side(1))
+    };
+    let line = |row: &Value| {
+        let untold = if row["better"].is_null() { "cannot be told: " } else { "" };
+        let unequal = if row["equal time"] == true { "" } else { ", error × time" };
+        format!(
+            "| {} | `{}` | {} | {:.1} | {} | {}, in {:.1} ms | {untold}{}{unequal} | {} | {:.0} % |",
+            text(row, "scene"),
+            text(row, "graph"),
+            text(row, "size").replace('x', "×"),
+            number(row, "ms"),
+            short(number(&row["mse"], "value")),
+            short(number(&row["baseline mse"], "value")),
+            number(row, "baseline ms"),
+            times(&row["times lower"]),
+            times(&row["times lower, relMSE"]),
+            100.0 * number(row, "bias² share").max(0.0)
+        )
+    };
+    let rows = evidence["rows"].as_array().expect("rows");
+    let table: Vec<String> = rows.iter().filter(|row| row["subject"] == subject).map(line).collect();
+    let page_text = read(page);
+    let shown: Vec<&str> =
+        page_text.lines().filter(|line| line.starts_with("| ") && line.contains(", in ") && line.contains(" ms | ")).collect();
+    assert_eq!(shown, table, "{page} should hold:\n{}", table.join("\n"));
+    let named = |row: &Value| number(row, "reference share") <= 0.1;
+    let noisy: Vec<&str> = rows.iter().filter(|row| row["subject"] == subject && !named(row)).map(|row| text(row, "scene")).collect();
+    assert!(
+        noisy.iter().all(|scene| page_text.contains(&format!("reference of {scene}"))),
+        "{page} should tell of the references of {noisy:?}"
+    );
+}
+
+/// Three digits.
+fn short(value: f64) -> String {
+    if value >= 0.1 {
+        return format!("{value:.3}");
+    }
+    let scientific = format!("{value:.2e}");
+    let (digits, exponent) = scientific.split_once('e').expect("an exponent");
+    let raised = exponent
+        .chars()
+        .map(|c| if c == '-' { '⁻' } else { "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(c as usize - '0' as usize).expect("a digit") });
+    format!("{digits}·10{}", raised.collect::<String>())
+}
+
+#[test]
+fn the_table_of_direct_light_at_equal_time_is_its_evidence() {
+    assert_equal_time("docs/restir_di.md", "di");
+}
+
+#[test]
+fn the_table_of_indirect_light_at_equal_time_is_its_evidence() {
+    assert_equal_time("docs/restir_gi.md", "gi");
+}
+
 /// Milliseconds and rays a pixel of each pass.
 fn passes(row: &Value) -> String {
     let pass = |it: &Value| format!("{} {:.1} ({:.2})", text(it, "pass"), number(it, "ms"), number(it, "rays a pixel"));
