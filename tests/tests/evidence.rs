@@ -193,6 +193,34 @@ fn the_table_of_what_indirect_light_costs_is_its_evidence() {
 }
 
 #[test]
+fn the_figures_of_indirect_light_are_their_evidence() {
+    let evidence: Value = serde_json::from_str(&read("docs/evidence/indirect_figures.json")).expect("the evidence is JSON");
+    let rows = evidence["rows"].as_array().expect("rows");
+    let of = |figure: u64| rows.iter().filter(move |row| row["figure"] == figure);
+    let noise = |row: &Value| format!("{:.3} ± {:.3}", number(row, "variance / mean²"), number(row, "standard error"));
+    let drawn: Vec<Value> = of(14).cloned().collect();
+    let line = |graph: &str| {
+        let cells: Vec<String> = drawn.iter().filter(|row| text(row, "graph") == graph).map(noise).collect();
+        format!("| `{graph}` | {} |", cells.join(" | "))
+    };
+    let mut table: Vec<String> = names(&drawn, "graph").into_iter().map(line).collect();
+    let second = |row: &Value| {
+        format!(
+            "| {} | second bounce | {:.1} % ± {:.1} % |",
+            text(row, "scene"),
+            number(row, "second bounce %"),
+            number(row, "standard error %")
+        )
+    };
+    table.extend(of(8).map(second));
+    let page = read("docs/restir_gi.md");
+    let begin = page.find("**Where initial directions come from**").expect("a paragraph of figure 14");
+    let end = page.find("**At equal time**").expect("a paragraph of equal time");
+    let shown: Vec<&str> = page[begin..end].lines().filter(|line| line.starts_with("| ") && line.contains('±')).collect();
+    assert_eq!(shown, table, "docs/restir_gi.md should hold:\n{}", table.join("\n"));
+}
+
+#[test]
 fn the_table_of_the_light_change_is_its_evidence() {
     let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" frames |");
     assert_table("docs/restir_gi.md", "docs/evidence/light_change.json", shown, |row| {
