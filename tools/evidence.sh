@@ -4,8 +4,8 @@
 #     tools/evidence.sh external [--size 64x36|256x144] [--minutes N] [SCENE:TRANSPORT …]
 #     tools/evidence.sh held_out [SCENE …]
 #     tools/evidence.sh compare_aa
-#     tools/evidence.sh restir_di [MINUTES] [SCENE …]
-#     tools/evidence.sh restir_gi [MINUTES] [SCENE …]
+#     tools/evidence.sh restir_di [MINUTES] [SCENE[:RULE] …]
+#     tools/evidence.sh restir_gi [MINUTES] [SCENE[:RULE] …]
 #     tools/evidence.sh equal_time di|gi [WxH] [SCENE …]
 #     tools/evidence.sh restir_di_cost
 #     tools/evidence.sh restir_gi_cost

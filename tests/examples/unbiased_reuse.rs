@@ -1,7 +1,7 @@
 //! Is unbiased reuse unbiased? One row for each scene, motion and rule: frame 8 over independent seeds against path tracing.
 //!
 //! ```text
-//! cargo run -p aquifer-tests --example unbiased_reuse -- di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE]
+//! cargo run -p aquifer-tests --example unbiased_reuse -- di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE[:RULE] …]
 //! ```
 //!
 //! FOLDER keeps references and what seeds have shown so far: a run that was stopped goes on where it was. Seeds are added to all rows in turn, twice as
@@ -179,7 +179,7 @@ enum End {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [subject, file, folder, commit, date, minutes, rest @ ..] = &arguments[..] else {
-        eprintln!("unbiased_reuse di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE]");
+        eprintln!("unbiased_reuse di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE[:RULE] …]");
         return ExitCode::from(2);
     };
     let Some(subject) = SUBJECTS.iter().find(|it| it.name == *subject) else {
@@ -198,7 +198,8 @@ fn main() -> ExitCode {
         return ExitCode::from(measuring.part(goal, Evidence::open(file, commit, date, &context)) as u8);
     }
     fs::create_dir_all(folder).unwrap_or_else(|error| panic!("{folder}: {error}"));
-    let asked = |case: &Case| rest.is_empty() || rest.iter().any(|name| name == case.lit.scene);
+    let is_it = |case: &Case, name: &str| [case.lit.scene, &format!("{}:{}", case.lit.scene, case.mis)].contains(&name);
+    let asked = |case: &Case| rest.is_empty() || rest.iter().any(|name| is_it(case, name));
     let mut open: Vec<usize> = subject.cases().iter().enumerate().filter(|(_, case)| asked(case)).map(|(number, _)| number).collect();
     let mut goal = FEWEST_SEEDS;
     while !open.is_empty() && goal < 2 * MOST_SEEDS {
