@@ -6,7 +6,7 @@
 //!
 //! Rows are added to FILE, or renewed there; FOLDER keeps pages and films, and references for the next time.
 
-use aquifer_tests::{context, evidence::Evidence};
+use aquifer_tests::{context, evidence::Evidence, fair_settings};
 use serde_json::{Value, json};
 use std::process::{Command, Stdio};
 
@@ -55,7 +55,10 @@ fn main() {
         let out = format!("{folder}/{}-{scene}-{size}", subject.name);
         let options = ["--transport", subject.transport, "--scene", scene, "--size", size, "--seeds", SEEDS, "--warm-up", WARM_UP];
         let rest = ["--reference-samples", REFERENCE_SAMPLES, "--json", "-o", &out];
-        let output = Command::new(program).arg("compare").args(subject.graphs).args(options).args(rest).stderr(Stdio::inherit()).output();
+        let settings = fair_settings(scene).iter().flat_map(|setting| ["--set", setting]);
+        let mut command = Command::new(program);
+        let command = command.arg("compare").args(subject.graphs).args(options).args(rest).args(settings);
+        let output = command.stderr(Stdio::inherit()).output();
         let output = output.unwrap_or_else(|error| panic!("{program}: {error}"));
         let report = serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{scene}: {error}"));
         for (graph, found) in told(&report) {

@@ -18,8 +18,8 @@ use aquifer_tests::{
     Parts, context,
     cost::costs,
     evidence::Evidence,
-    scene,
-    seeds::{path_traced_film, shaded},
+    fair_settings, scene,
+    seeds::{path_traced_parts, shaded},
 };
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -44,11 +44,10 @@ fn main() {
     let mut evidence = Evidence::open(file, commit, date, &context);
     for name in SCENES.into_iter().filter(|name| only.is_empty() || only.iter().any(|it| it == name)) {
         let scene = scene(name);
-        let path_tracer = "extends = 'path_tracer.toml'\ntransport = 'indirect:2'";
-        let reference = path_traced_film(&context, &scene, path_tracer, REFERENCE_FRAMES, centred());
+        let reference = reference(&context, &scene, name);
         let mut one_path = None;
         for (graph, pass, warm_up) in GRAPHS {
-            let mut found = measure(&context, &scene, graph, pass, warm_up, &reference);
+            let mut found = measure(&context, &scene, name, (graph, pass, warm_up), &reference);
             let [error, rays] = ["MSE", "rays a pixel"].map(|key| found[key].as_f64().unwrap_or_default());
             let (its_error, its_rays) = *one_path.get_or_insert((error, rays));
             found["lower error"] = json!(its_error / error);
@@ -64,10 +63,17 @@ fn centred() -> View {
     View { centred: true, ..View::default() }
 }
 
-fn measure(context: &Context, scene: &Arc<Scene>, graph: &str, pass: &str, warm_up: u32, reference: &Film) -> Value {
+fn reference(context: &Context, scene: &Arc<Scene>, name: &str) -> Film {
+    let graph = "extends = 'path_tracer.toml'\ntransport = 'indirect:2'";
+    let parts = path_traced_parts(scene, graph, centred());
+    let settings = [parts.settings, fair_settings(name)].concat();
+    Parts { settings: &settings, ..parts }.film(context, REFERENCE_FRAMES)
+}
+
+fn measure(context: &Context, scene: &Arc<Scene>, name: &str, (graph, pass, warm_up): (&str, &str, u32), reference: &Film) -> Value {
     let text = format!("extends = '{graph}.toml'\ntransport = 'indirect:2'");
     let color = format!("{pass}.color");
-    let parts = Parts { keep: &[&color], view: centred(), ..Parts::new(scene, &text) };
+    let parts = Parts { settings: fair_settings(name), keep: &[&color], view: centred(), ..Parts::new(scene, &text) };
     let mut renderer = parts.renderer(context);
     let films: Vec<Film> = (0..SEEDS).map(|seed| shaded(&mut renderer, &color, seed, warm_up)).collect();
     let error = |film| mse(film, reference).expect("films of one size").value();

@@ -153,6 +153,12 @@ impl Rolling {
     }
 }
 
+/// Settings of all graphs that are compared on a built-in scene: where a sun is among few lights, drawing them by power gives it nearly all samples, and
+/// what the lamps light is noise.
+pub fn fair_settings(scene: &str) -> &'static [&'static str] {
+    if scene == "sun_room" { &["slots.proposal=uniform"] } else { &[] }
+}
+
 /// A built-in scene, finished.
 ///
 /// # Panics

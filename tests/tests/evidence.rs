@@ -221,6 +221,24 @@ fn the_figures_of_indirect_light_are_their_evidence() {
 }
 
 #[test]
+fn the_table_of_what_the_error_of_indirect_light_is_made_of_is_its_evidence() {
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| ") && line.contains(" rays |");
+    assert_table("docs/restir_gi.md", "docs/evidence/error_parts.json", shown, |row| {
+        format!(
+            "| {} | `{}` | {} | {:.1} | {:.2} rays | {:.1} | {:.0} % | {:.0} % |",
+            text(row, "scene"),
+            text(row, "graph"),
+            short(number(row, "MSE")),
+            number(row, "lower error"),
+            number(row, "rays a pixel"),
+            number(row, "lower error") / number(row, "more rays"),
+            100.0 * number(row, "share of hue"),
+            100.0 * number(row, "share of few pixels")
+        )
+    });
+}
+
+#[test]
 fn the_table_of_the_light_change_is_its_evidence() {
     let shown: fn(&&str) -> bool = |line| line.starts_with("| `") && line.contains(" frames |");
     assert_table("docs/restir_gi.md", "docs/evidence/light_change.json", shown, |row| {
