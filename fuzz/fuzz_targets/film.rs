@@ -2,12 +2,11 @@
 
 #![no_main]
 
-#[allow(dead_code, reason = "each target reads one kind")]
-#[path = "../../tools/lab/tests/common/from_disk.rs"]
-mod from_disk;
+#[path = "../../tools/lab/tests/common/film.rs"]
+mod film;
 
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    from_disk::film(bytes);
+    film::is_whole(bytes);
 });

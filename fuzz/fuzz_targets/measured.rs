@@ -2,12 +2,11 @@
 
 #![no_main]
 
-#[allow(dead_code, reason = "each target reads one kind")]
-#[path = "../../tools/lab/tests/common/from_disk.rs"]
-mod from_disk;
+#[path = "../../tools/lab/tests/common/measured.rs"]
+mod measured;
 
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    from_disk::measured(bytes);
+    measured::is_whole(bytes);
 });

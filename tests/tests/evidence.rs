@@ -128,12 +128,8 @@ fn assert_equal_time(page: &str, subject: &str) {
     let shown: Vec<&str> =
         page_text.lines().filter(|line| line.starts_with("| ") && line.contains(", in ") && line.contains(" ms | ")).collect();
     assert_eq!(shown, table, "{page} should hold:\n{}", table.join("\n"));
-    let named = |row: &Value| number(row, "reference share") <= 0.1;
-    let noisy: Vec<&str> = rows.iter().filter(|row| row["subject"] == subject && !named(row)).map(|row| text(row, "scene")).collect();
-    assert!(
-        noisy.iter().all(|scene| page_text.contains(&format!("reference of {scene}"))),
-        "{page} should tell of the references of {noisy:?}"
-    );
+    let noise = rows.iter().map(|row| number(row, "reference share")).fold(0.0, f64::max);
+    assert!(noise <= 0.1, "references hold {noise} of the smallest error: both pages say a tenth at most");
 }
 
 /// Three digits.

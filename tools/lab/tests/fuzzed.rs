@@ -1,7 +1,11 @@
 //! Files that fuzzing starts from or has found (`tools/fuzz.sh film`, `report`, `measured`), read without a fuzzer.
 
-#[path = "common/from_disk.rs"]
-mod from_disk;
+#[path = "common/film.rs"]
+mod film;
+#[path = "common/measured.rs"]
+mod measured;
+#[path = "common/report.rs"]
+mod report;
 
 use std::path::{Path, PathBuf};
 
@@ -19,15 +23,15 @@ fn every_file(target: &str, is_whole: fn(&[u8]) -> bool) {
 
 #[test]
 fn films_are_refused_or_whole() {
-    every_file("film", from_disk::film);
+    every_file("film", film::is_whole);
 }
 
 #[test]
 fn reports_are_refused_or_make_a_page() {
-    every_file("report", from_disk::report);
+    every_file("report", report::is_whole);
 }
 
 #[test]
 fn measurements_are_missing_or_whole() {
-    every_file("measured", from_disk::measured);
+    every_file("measured", measured::is_whole);
 }
