@@ -33,7 +33,7 @@ use aquifer_tests::{
 use serde_json::{Value, json};
 use std::{
     fs,
-    path::Path,
+    path::{Path, PathBuf},
     process::{Command, ExitCode},
     sync::Arc,
     time::{Duration, Instant},
@@ -49,9 +49,11 @@ const MOST_SEEDS: u64 = 4000;
 const PART: u64 = 256;
 /// Seconds a frame.
 const STEP: f32 = 1.0 / 30.0;
-/// Of a reference, of eight paths each: how many at a time, and at most.
+/// Of a part of a reference, of eight paths each: how many at a time, and at most.
 const REFERENCE_FRAMES: u32 = 512;
 const MOST_REFERENCE_FRAMES: u32 = 16_384;
+/// Share that a reference may have of the variance that resolves a row.
+const REFERENCE_SHARE: f64 = 0.35;
 
 /// What is shown of a kind of light.
 struct Subject {
@@ -71,16 +73,16 @@ struct Lit {
     slots: &'static str,
     ours: &'static str,
     settings: &'static [&'static str],
-    /// Further ones, by the rule `contribution`.
-    by_contribution: &'static [&'static str],
+    /// Further ones, by rule.
+    by_rule: &'static [(&'static str, &'static [&'static str])],
 }
 
 const fn direct(scene: &'static str, motions: &'static [&'static str], slots: &'static str) -> Lit {
-    Lit { scene, motions, transport: "direct", slots, ours: "", settings: &[], by_contribution: &[] }
+    Lit { scene, motions, transport: "direct", slots, ours: "", settings: &[], by_rule: &[] }
 }
 
 const fn indirect(scene: &'static str, transport: &'static str, slots: &'static str, ours: &'static str) -> Lit {
-    Lit { scene, motions: &["still", "camera moves"], transport, slots, ours, settings: &[], by_contribution: &[] }
+    Lit { scene, motions: &["still", "camera moves"], transport, slots, ours, settings: &[], by_rule: &[] }
 }
 
 const STILL_AND_MOVING: &[&str] = &["still", "all moves"];
@@ -90,14 +92,20 @@ const LAMPS: &str = "lamps";
 
 /// Where a sun is among few lights, drawing them by power gives it nearly all samples, and what the lamps light is noise.
 const EVENLY: &str = "proposal = 'uniform'\n";
-/// Most of what is drawn there is hidden: more samples are tested.
-const SEEN: &[&str] = &["initial.candidates=8", "initial.winners=8"];
+/// Most of what is drawn there is hidden: all of it is tested.
+const SEEN: &[&str] = &["initial.candidates=1", "initial.winners=16", "temporal.cap=4"];
 /// Lamps mirrored by glossy surfaces are seldom drawn by their power: their light would come in few large pieces. And where what is mirrored moves, a
 /// history of confidence c outweighs by up to c what the pixel itself finds there, frame after frame.
 const MET: &[&str] = &["initial.candidates=12", "initial.bsdf_rays=4", "temporal.cap=1"];
 /// Shares of confidence alone bound no weight by p̂ / p̂_i, which is large between narrow lobes that point elsewhere: neighbours must be turned alike.
 /// What they give otherwise is told in docs/restir_di.md.
-const ALIKE: &[&str] = &["spatial.normal=4.0", "temporal.normal=4.0"];
+const ALIKE: &[&str] = &["spatial.normal=1.0", "temporal.normal=1.0"];
+/// Where lamps are many a reservoir holds few of them: what a history of confidence c is short of comes back as pieces c times as large.
+const MANY: &[&str] = &["initial.candidates=64", "initial.winners=2", "temporal.cap=1"];
+/// Of a lamp that has just come up a history knows nothing, and of one beside another that went out little, for all its confidence.
+const FORGETFUL: &[&str] = &["temporal.cap=1"];
+/// Where little of what a pixel sees is lit, more paths a pixel cost less than more seeds; and histories that count less are less alike.
+const DENSE: &[&str] = &["initial.candidates=32", "spatial.cap=8"];
 /// Exact on glossy surfaces too.
 const EXACT: &str = "domain = 'gi_path'\n";
 
@@ -108,10 +116,10 @@ const SUBJECTS: [Subject; 2] = [
         settings: &["spatial.radius=4.0", "spatial.rows=0.0"],
         scenes: &[
             direct("cornell", STILL_AND_MOVING, ""),
-            direct("many_lights", STILL_AND_MOVING, ""),
+            Lit { by_rule: &[("balance", MANY), ("contribution", MANY)], ..direct("many_lights", STILL_AND_MOVING, "") },
             Lit { settings: SEEN, ..direct("sun_room", STILL_AND_MOVING, EVENLY) },
-            Lit { settings: MET, by_contribution: ALIKE, ..direct("glossy", STILL_AND_MOVING, "") },
-            direct(LAMPS, SWITCHED, ""),
+            Lit { settings: MET, by_rule: &[("contribution", ALIKE)], ..direct("glossy", STILL_AND_MOVING, "") },
+            Lit { settings: FORGETFUL, ..direct(LAMPS, SWITCHED, "") },
         ],
         rules: &["pairwise", "balance", "contribution"],
         // 0.2 % of the whole, shown as equivalence; 1 % of every block that is resolved to 0.3 %.
@@ -129,9 +137,9 @@ const SUBJECTS: [Subject; 2] = [
         settings: &["spatial.radius=4.0", "spatial.rows=0.0", "initial.candidates=8"],
         scenes: &[
             indirect("cornell", "indirect:2", "", ""),
-            Lit { by_contribution: ALIKE, ..indirect("glossy", "indirect:2", "", EXACT) },
-            indirect("door_ajar", "indirect:2", "", EXACT),
-            indirect("sun_room", "indirect:2", EVENLY, EXACT),
+            Lit { settings: DENSE, by_rule: &[("contribution", ALIKE)], ..indirect("glossy", "indirect:2", "", EXACT) },
+            Lit { settings: DENSE, ..indirect("door_ajar", "indirect:2", "", EXACT) },
+            Lit { settings: DENSE, ..indirect("sun_room", "indirect:2", EVENLY, EXACT) },
             indirect("cornell", "indirect:3", "", ""),
         ],
         rules: &["pairwise", "contribution"],
@@ -235,6 +243,29 @@ fn enough(verdict: Verdict) -> u64 {
     }
 }
 
+/// What seeds have shown so far, kept in a file, and of which graph and settings: of others it would be something else.
+struct Shown {
+    path: PathBuf,
+    of: Value,
+    moments: BlockMoments,
+}
+
+impl Shown {
+    fn open(path: PathBuf, of: Value) -> Self {
+        let kept = || {
+            let kept: Value = serde_json::from_str(&fs::read_to_string(&path).ok()?).ok()?;
+            if kept["of"] == of { serde_json::from_value(kept["moments"].clone()).ok() } else { None }
+        };
+        let moments = kept().unwrap_or_else(|| BlockMoments::new([64, 36], SIDE, Quantity::Luminance));
+        Self { path, of, moments }
+    }
+
+    fn write(&self) {
+        let text = json!({ "of": self.of, "moments": self.moments }).to_string();
+        fs::write(&self.path, text).unwrap_or_else(|error| panic!("{}: {error}", self.path.display()));
+    }
+}
+
 struct Measuring<'a> {
     context: &'a Context,
     subject: &'static Subject,
@@ -259,40 +290,40 @@ impl Measuring<'_> {
         let scene = if lit.scene == LAMPS { lamps(FRAME as f32 * STEP) } else { gliding(lit.scene, motion) };
         let moving = View { step: STEP, centred: true, ..View::default() };
         let name = format!("{}-{}-{}-{motion}", self.subject.name, lit.scene, lit.transport).replace([' ', ':'], "_");
-        let kept = self.folder.join(format!("{name}-{mis}.json"));
-        let read = || serde_json::from_str::<BlockMoments>(&fs::read_to_string(&kept).ok()?).ok();
-        let mut moments = read().unwrap_or_else(|| BlockMoments::new([64, 36], SIDE, Quantity::Luminance));
-        let reference = self.reference(&scene, &moving, &self.folder.join(format!("{name}.exr")));
+        let reference = self.reference(&scene, &moving, &name);
         let judged =
             |moments: &BlockMoments| compare_blocks(&moments.blocks(), &reference, &(self.subject.test)()).expect("grids of one size");
         let settled = |moments: &BlockMoments| moments.count() >= FEWEST_SEEDS && moments.count() >= enough(judged(moments).verdict);
-        let most = goal.min(moments.count() + PART);
         let graph = format!(
             "extends = '{}.toml'\ntransport = '{}'\n[slots]\nmis = '{mis}'\n{}{}",
             self.subject.graph, lit.transport, lit.slots, lit.ours
         );
-        let further = if mis == "contribution" { lit.by_contribution } else { &[] };
-        let settings = [self.subject.settings, lit.settings, further].concat();
+        let further = lit.by_rule.iter().filter(|(rule, _)| *rule == mis).flat_map(|(_, settings)| *settings);
+        let settings: Vec<&str> = self.subject.settings.iter().chain(lit.settings).chain(further).copied().collect();
         let parts = Parts { settings: &settings, keep: &["shade.color"], view: moving, ..Parts::new(&scene, &graph) };
         let mut renderer = parts.renderer(self.context);
-        while moments.count() < most && Instant::now() < self.end && !settled(&moments) {
-            let from = moments.count();
-            add_seeds(&mut renderer, FRAME, from..most.min(from + FEWEST_SEEDS), &mut moments);
-            let text = serde_json::to_string(&moments).expect("plain data");
-            fs::write(&kept, text).unwrap_or_else(|error| panic!("{}: {error}", kept.display()));
+        let mut shown = Shown::open(self.folder.join(format!("{name}-{mis}.json")), json!({ "graph": graph, "settings": settings }));
+        let most = goal.min(shown.moments.count() + PART);
+        while shown.moments.count() < most && Instant::now() < self.end && !settled(&shown.moments) {
+            let from = shown.moments.count();
+            add_seeds(&mut renderer, FRAME, from..most.min(from + FEWEST_SEEDS), &mut shown.moments);
+            shown.write();
         }
+        let moments = &shown.moments;
         if moments.count() > 0 {
-            let found = judged(&moments);
+            let found = judged(moments);
             eprintln!("{}, {}, {motion}, {mis}, {} seeds: {found}", lit.scene, lit.transport, moments.count());
             let mut row = told(&found);
-            if !settled(&moments) {
+            if !settled(moments) {
                 row["verdict"] = json!(Verdict::NotResolved.to_string());
             }
             row["seeds"] = json!(moments.count());
             row["frame"] = json!(FRAME);
+            row["slots"] = json!(format!("{}{}", lit.slots, lit.ours).trim());
+            row["settings"] = json!(settings);
             evidence.put(key, row);
         }
-        if settled(&moments) {
+        if settled(moments) {
             End::Settled
         } else if moments.count() >= goal {
             End::Open
@@ -301,29 +332,72 @@ impl Measuring<'_> {
         }
     }
 
-    /// At the moment of the frame that is compared, with at most half the variance that resolves a row: what is resolved beside itself.
-    fn reference(&self, scene: &Arc<Scene>, moving: &View, path: &Path) -> Blocks {
-        let blocks = |film: &Film| Blocks::of_film(film, SIDE, Quantity::Luminance);
-        let film = Film::read(path).unwrap_or_else(|_| {
+    /// At the moment of the frame that is compared, with a small share of the variance that resolves a row. It has parts, a file each with its frames in
+    /// its name, so that one which is not fine enough goes on.
+    fn reference(&self, scene: &Arc<Scene>, moving: &View, name: &str) -> Blocks {
+        let blocks = |parts: &[(u32, Film)]| Blocks::of_film(&joined(parts), SIDE, Quantity::Luminance);
+        // A film beside itself has twice its variance.
+        let shrink = (2.0 * REFERENCE_SHARE).sqrt();
+        let test = (self.subject.test)();
+        let fine = BlockTest { overall_error: shrink * test.overall_error, block_error: shrink * test.block_error, ..test };
+        let beside_itself = |parts: &[(u32, Film)]| compare_blocks(&blocks(parts), &blocks(parts), &fine).expect("grids of one size");
+        let mut parts = self.parts_of_reference(name);
+        if parts.is_empty() || beside_itself(&parts).verdict != Verdict::Passed {
             let held = View { time: moving.time_at(FRAME), step: 0.0, ..moving.clone() };
-            let graph =
-                format!("extends = 'path_tracer.toml'\ntransport = '{}'\n[slots]\n{}", self.case.lit.transport, self.case.lit.slots);
-            let mut rolling = path_traced_parts(scene, &graph, held).rolling(self.context);
-            let test = (self.subject.test)();
+            let Lit { transport, slots, .. } = self.case.lit;
+            let graph = format!("extends = 'path_tracer.toml'\ntransport = '{transport}'\n[slots]\n{slots}");
+            let tracer = path_traced_parts(scene, &graph, held);
+            let mut rolling = Parts { seed: tracer.seed + parts.len() as u64, ..tracer }.rolling(self.context);
             let begin = Instant::now();
-            let mut frames = 0;
-            let film = loop {
-                let film = rolling.after(REFERENCE_FRAMES);
-                frames += REFERENCE_FRAMES;
-                let beside_itself = compare_blocks(&blocks(&film), &blocks(&film), &test).expect("grids of one size");
-                if beside_itself.verdict == Verdict::Passed || frames >= MOST_REFERENCE_FRAMES {
-                    eprintln!("{}: {frames} frames in {:.0?}: {beside_itself}", path.display(), begin.elapsed());
-                    break film;
+            parts.push((0, Film::default()));
+            let found = loop {
+                let last = parts.last_mut().expect("one was pushed");
+                *last = (last.0 + REFERENCE_FRAMES, rolling.after(REFERENCE_FRAMES));
+                let frames = last.0;
+                let found = beside_itself(&parts);
+                if found.verdict == Verdict::Passed || frames >= MOST_REFERENCE_FRAMES {
+                    break found;
                 }
             };
-            film.write(path).unwrap_or_else(|error| panic!("{error}"));
-            film
-        });
-        blocks(&film)
+            let (frames, film) = parts.last().expect("one was pushed");
+            let path = self.folder.join(format!("{name}-{}-{frames}.exr", parts.len() - 1));
+            eprintln!("{}: {:.0?}: {found}", path.display(), begin.elapsed());
+            film.write(&path).unwrap_or_else(|error| panic!("{error}"));
+        }
+        blocks(&parts)
     }
+
+    /// Those that are kept, by number: frames and films.
+    fn parts_of_reference(&self, name: &str) -> Vec<(u32, Film)> {
+        let folder = fs::read_dir(self.folder).unwrap_or_else(|error| panic!("{}: {error}", self.folder.display()));
+        let numbered = |path: PathBuf| {
+            let (number, frames) =
+                path.file_name()?.to_str()?.strip_prefix(name)?.strip_prefix('-')?.strip_suffix(".exr")?.split_once('-')?;
+            let film = Film::read(&path).unwrap_or_else(|error| panic!("{error}"));
+            Some((number.parse::<u32>().ok()?, frames.parse().ok()?, film))
+        };
+        let mut parts: Vec<_> = folder.filter_map(|entry| numbered(entry.expect("a folder").path())).collect();
+        parts.sort_by_key(|(number, ..)| *number);
+        parts.into_iter().map(|(_, frames, film)| (frames, film)).collect()
+    }
+}
+
+/// Means of so many frames each, as one mean.
+fn joined(parts: &[(u32, Film)]) -> Film {
+    let all: u32 = parts.iter().map(|(frames, _)| frames).sum();
+    let share = |frames: u32| f64::from(frames) / f64::from(all);
+    let size = parts[0].1.size;
+    let mut color = vec![[0.0_f64; 3]; parts[0].1.pixels()];
+    let mut variance = color.clone();
+    for (frames, film) in parts {
+        let of_mean = film.variance.as_ref().expect("a mean that was rendered has a variance");
+        for (pixel, (mean, square)) in film.color.iter().zip(of_mean).enumerate() {
+            for channel in 0..3 {
+                color[pixel][channel] += share(*frames) * f64::from(mean[channel]);
+                variance[pixel][channel] += share(*frames).powi(2) * f64::from(square[channel]);
+            }
+        }
+    }
+    let rounded = |plane: Vec<[f64; 3]>| plane.into_iter().map(|pixel| pixel.map(|value| value as f32)).collect();
+    Film { size, color: rounded(color), variance: Some(rounded(variance)), ..Film::default() }
 }
