@@ -10,11 +10,11 @@
 //! the proposal's own density is not known. A light that no ray can meet has p_b = 0.
 //! @default
 
-import package::base::math::{luminance};
 import package::base::rng::{Rng, rng_bits, rng_next4};
 import package::scene::geometry::{NONE};
 import package::scene::ray::{leave};
 import package::slot::lights::{arrive, light_count, light_of, light_point, shadow_ray, uv_of};
+import package::slot::magnitude::{magnitude};
 import package::slot::proposal::{propose, weighting_pdf};
 import package::slot::trace::{closest, occluded};
 import package::surface::{Surface, ray_from, scatter, scatter_pdf, scatter_sample};
@@ -78,7 +78,7 @@ fn value(s: Sample, at: Surface) -> vec3<f32> {
 }
 
 fn p_hat(s: Sample, at: Surface) -> f32 {
-    return luminance(value(s, at));
+    return magnitude(value(s, at));
 }
 
 fn visible(s: Sample, at: Surface) -> bool {
@@ -90,7 +90,7 @@ fn visible(s: Sample, at: Surface) -> bool {
 fn shift(s: Sample, src: Surface, dst: Surface) -> Shifted {
     if (s.light >= light_count()) { return Shifted(s, vec3<f32>(0.0), 0.0, 0.0); }
     let there = value(s, dst);
-    return Shifted(s, there, luminance(there), 1.0);
+    return Shifted(s, there, magnitude(there), 1.0);
 }
 
 /// A point of a light needs no replay: its radiance is looked up anew whenever it is used.

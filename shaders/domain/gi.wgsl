@@ -17,10 +17,11 @@ import package::reconnect::{reconnection_jacobian, seen_by, segment};
 import package::frame::frame::{NOW};
 import package::scene::geometry::{NONE};
 import package::scene::ray::{Ray};
+import package::slot::magnitude::{magnitude};
 import package::slot::trace::{closest, occluded};
 import package::surface::{Surface, ray_from, scatter, surface_at};
 
-/// What the target function is: eq. 9, luminance of the integrand; or eq. 10, of the radiance alone, which suits more pixels.
+/// What the target function is: eq. 9, magnitude of the integrand; or eq. 10, of the radiance alone, which suits more pixels.
 /// @choices integrand radiance
 override target_of: u32 = 0u;
 
@@ -59,8 +60,8 @@ fn value(s: Sample, at: Surface) -> vec3<f32> {
 /// Zero below the horizon of `at`, where it draws nothing.
 fn p_hat(s: Sample, at: Surface) -> f32 {
     let f = value(s, at);
-    if (target_of == 0u || max3(f) <= 0.0) { return luminance(f); }
-    return luminance(recall(s.end).radiance);
+    if (target_of == 0u || max3(f) <= 0.0) { return magnitude(f); }
+    return magnitude(recall(s.end).radiance);
 }
 
 fn visible(s: Sample, at: Surface) -> bool {

@@ -10,7 +10,7 @@
 //! bias (moving_lights): light found in earlier frames is kept, though lights have moved since
 //! bias (visibility = at_shading) [visibility = in_target]: samples exist only where the pixel that drew them sees them, which no MIS weight knows
 
-import package::base::math::{is_finite, luminance, max3};
+import package::base::math::{is_finite, max3};
 import package::base::pack::{pack_radiance, pack_unit, unpack_radiance, unpack_unit};
 import package::base::rng::{Rng, rng_next4, rng_vertex};
 import package::bounce::{first_bounce, onward, suffix_rng, suffix_seed};
@@ -18,10 +18,11 @@ import package::path::{Incident, met, next_event, transport_max, transport_min, 
 import package::reconnect::{reconnection_jacobian, seen_by, segment};
 import package::scene::geometry::{NONE, position_of};
 import package::scene::ray::{Hit};
+import package::slot::magnitude::{magnitude};
 import package::slot::trace::{closest, occluded};
 import package::surface::{Surface, ray_from, scatter, scatter_sample, surface_at};
 
-/// What the target function is: eq. 9, luminance of the integrand; or eq. 10, of the radiance that leaves x_s, which suits more pixels.
+/// What the target function is: eq. 9, magnitude of the integrand; or eq. 10, of the radiance that leaves x_s, which suits more pixels.
 /// @choices integrand radiance
 override target_of: u32 = 0u;
 
@@ -83,7 +84,7 @@ fn offer_branch(c: ptr<function, Choice>, s: Surface, branch: Incident, u: f32) 
     let light = pack_radiance(branch.value);
     let incoming = pack_unit(branch.direction);
     // From what is packed: this is what others will see.
-    let p = luminance(scatter(s, unpack_unit(incoming)) * unpack_radiance(light));
+    let p = magnitude(scatter(s, unpack_unit(incoming)) * unpack_radiance(light));
     let w = p * branch.weight;
     if (!is_finite(w) || w <= 0.0) { return; }
     (*c).sum += w;
@@ -114,8 +115,8 @@ fn p_hat(s: Sample, at: Surface) -> f32 {
     let end = end_of(s, at);
     let f = scatter(at, -end.view);
     let radiance = leaving(s, end);
-    if (target_of == 0u || max3(f) <= 0.0) { return luminance(f * radiance); }
-    return luminance(radiance);
+    if (target_of == 0u || max3(f) <= 0.0) { return magnitude(f * radiance); }
+    return magnitude(radiance);
 }
 
 fn visible(s: Sample, at: Surface) -> bool {

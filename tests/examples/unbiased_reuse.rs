@@ -102,6 +102,8 @@ const MET: &[&str] = &["initial.candidates=12", "initial.bsdf_rays=4", "temporal
 const ALIKE: &[&str] = &["spatial.normal=1.0", "temporal.normal=1.0"];
 /// Where lamps are many a reservoir holds few of them: what a history of confidence c is short of comes back as pieces c times as large.
 const MANY: &[&str] = &["initial.candidates=64", "initial.winners=2", "temporal.cap=1"];
+/// By confidence alone the mean of few seeds is the noisiest: more of what is drawn is tested.
+const MORE: &[&str] = &["initial.candidates=64", "initial.winners=4", "temporal.cap=1"];
 /// Of a lamp that has just come up a history knows nothing, and of one beside another that went out little, for all its confidence.
 const FORGETFUL: &[&str] = &["temporal.cap=1"];
 /// Where little of what a pixel sees is lit, more paths a pixel cost less than more seeds; and histories that count less are less alike.
@@ -116,8 +118,8 @@ const SUBJECTS: [Subject; 2] = [
         settings: &["spatial.radius=4.0", "spatial.rows=0.0"],
         scenes: &[
             direct("cornell", STILL_AND_MOVING, ""),
-            Lit { by_rule: &[("balance", MANY), ("contribution", MANY)], ..direct("many_lights", STILL_AND_MOVING, "") },
-            Lit { settings: SEEN, ..direct("sun_room", STILL_AND_MOVING, EVENLY) },
+            Lit { by_rule: &[("balance", MANY), ("contribution", MORE)], ..direct("many_lights", STILL_AND_MOVING, "") },
+            Lit { settings: SEEN, by_rule: &[("contribution", FORGETFUL)], ..direct("sun_room", STILL_AND_MOVING, EVENLY) },
             Lit { settings: MET, by_rule: &[("contribution", ALIKE)], ..direct("glossy", STILL_AND_MOVING, "") },
             Lit { settings: FORGETFUL, ..direct(LAMPS, SWITCHED, "") },
         ],
