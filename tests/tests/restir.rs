@@ -10,6 +10,8 @@ mod direct;
 mod full;
 #[path = "restir/indirect.rs"]
 mod indirect;
+#[path = "restir/magnitude.rs"]
+mod magnitude;
 #[path = "restir/options.rs"]
 mod options;
 #[path = "restir/own_rule.rs"]

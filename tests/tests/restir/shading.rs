@@ -18,7 +18,7 @@ fn cornell() -> Arc<Scene> {
 fn renderer(context: &Context, graph: &str, mis: &str, visibility: &str, shaders: &[(&str, &str)]) -> Renderer {
     let text = format!(
         "extends = '{graph}.toml'
-slots = {{ mis = '{mis}', visibility = '{visibility}' }}
+slots = {{ magnitude = 'luminance', mis = '{mis}', visibility = '{visibility}' }}
 output = 'shade.color'
 [pass.accumulate]
 remove = true
