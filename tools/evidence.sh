@@ -29,6 +29,7 @@
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # indirect_figures: two figures of the paper of ReSTIR GI as numbers: where initial directions come from, what the second bounce brings.
 # light_change: error of ReSTIR GI by frame after the sun goes out but for a tenth. moving_bias: bias by frame where all moves. error_parts: what the error of ReSTIR GI is made of, and for how many rays.
+# gi_choices: the same error without each of our choices in restir_gi_unbiased.
 # stress: every graph on every case of `aquifer stress`, some ten minutes a case; long: 10,000 frames of three graphs, of which lavapipe keeps some GB.
 # leaving_out: every graph on every scene with and without what the scene does not need, and what that saves (with the machine to itself); some ten
 # seconds a pair, most of it the driver's compiler.
@@ -75,7 +76,7 @@ restir_di_cost | restir_gi_cost)
     subject=${item#restir_}
     cargo run --quiet -p aquifer-tests --example restir_cost -- "${subject%_cost}" "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)"
     ;;
-indirect_figures | light_change | moving_bias | error_parts)
+indirect_figures | light_change | moving_bias | error_parts | gi_choices)
     cargo run --quiet -p aquifer-tests --example "$item" -- "docs/evidence/$item.json" "$(git rev-parse HEAD)" "$(date -u +%F)" "$@"
     ;;
 leaving_out)
@@ -91,7 +92,7 @@ stress | long)
     ;;
 *)
     echo "evidence: no item \`$item\`; there are: external, held_out, compare_aa, restir_di, restir_gi, equal_time, restir_di_cost, restir_gi_cost," \
-        "indirect_figures, light_change, moving_bias, error_parts, leaving_out, stress, long, viewer" >&2
+        "indirect_figures, light_change, moving_bias, error_parts, gi_choices, leaving_out, stress, long, viewer" >&2
     exit 2
     ;;
 esac

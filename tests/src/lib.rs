@@ -1,6 +1,7 @@
 //! The test harness: an adapter shared by all tests of a binary, and rigs that run graphs with kernels written in a test.
 
 pub mod cost;
+pub mod error_parts;
 pub mod evidence;
 pub mod leaving_out;
 pub mod motion;
