@@ -49,12 +49,12 @@ done
 beside 100 "$out/many_light_sampling.png" "$out/many_restir_di.png" "$out/many_restir_di_unbiased.png" |
     convert miff:- -quality 88 docs/images/restir_di.jpg
 
-# The 33rd frame of ReSTIR GI, between path tracing of two samples a pixel and of many.
+# The 33rd frame of ReSTIR GI, between path tracing of three samples a pixel, about its time, and of many.
 for scene in cornell sunlit_wall; do
-    render "${scene}_two" path_tracer_indirect "$scene" indirect:2 160x90 0..1 path_tracer.samples=2
+    render "${scene}_three" path_tracer_indirect "$scene" indirect:2 160x90 0..1 path_tracer.samples=3
     render "${scene}_frame" restir_gi_unbiased "$scene" indirect:2 160x90 0..33
     render "${scene}_truth" path_tracer_indirect "$scene" indirect:2 160x90 "$many" path_tracer.samples=8
-    beside 200 "$out/${scene}_two.png" "$out/${scene}_frame.png" "$out/${scene}_truth.png" >"$out/$scene.miff"
+    beside 200 "$out/${scene}_three.png" "$out/${scene}_frame.png" "$out/${scene}_truth.png" >"$out/$scene.miff"
 done
 convert "$out/cornell.miff" "$out/sunlit_wall.miff" -append -quality 90 docs/images/restir_gi.jpg
 

@@ -36,7 +36,7 @@ const SUBJECTS: [Subject; 2] = [
 const SEEDS: &str = "16";
 const WARM_UP: &str = "32";
 /// At most; they end when their variance is small beside the errors.
-const REFERENCE_SAMPLES: &str = "32768";
+const REFERENCE_SAMPLES: &str = "65536";
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -108,6 +108,9 @@ const MORE: &[&str] = &["initial.candidates=64", "initial.winners=4", "temporal.
 const FORGETFUL: &[&str] = &["temporal.cap=1"];
 /// Where little of what a pixel sees is lit, more paths a pixel cost less than more seeds; and histories that count less are less alike.
 const DENSE: &[&str] = &["initial.candidates=32", "spatial.cap=8"];
+/// The paper's targets, and its neighbours.
+const LUMINANCE: &str = "magnitude = 'luminance'\n";
+const THREE: &[&str] = &["spatial.taps=3"];
 /// Exact on glossy surfaces too.
 const EXACT: &str = "domain = 'gi_path'\n";
 
@@ -138,11 +141,11 @@ const SUBJECTS: [Subject; 2] = [
         graph: "restir_gi_unbiased",
         settings: &["spatial.radius=4.0", "spatial.rows=0.0", "initial.candidates=8"],
         scenes: &[
-            indirect("cornell", "indirect:2", "", ""),
+            Lit { settings: THREE, ..indirect("cornell", "indirect:2", "", LUMINANCE) },
             Lit { settings: DENSE, by_rule: &[("contribution", ALIKE)], ..indirect("glossy", "indirect:2", "", EXACT) },
             Lit { settings: DENSE, ..indirect("door_ajar", "indirect:2", "", EXACT) },
             Lit { settings: DENSE, ..indirect("sun_room", "indirect:2", EVENLY, EXACT) },
-            indirect("cornell", "indirect:3", "", ""),
+            Lit { settings: THREE, ..indirect("cornell", "indirect:3", "", LUMINANCE) },
         ],
         rules: &["pairwise", "contribution"],
         // 0.5 % of the whole, shown as equivalence; 2 % of every block that is resolved to 0.7 %.
