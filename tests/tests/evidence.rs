@@ -236,10 +236,10 @@ fn the_table_of_what_the_error_of_indirect_light_is_made_of_is_its_evidence() {
 
 #[test]
 fn the_table_of_choices_in_indirect_light_is_its_evidence() {
-    let shown: fn(&&str) -> bool = |line| line.starts_with("| ") && line.contains(" times the rays |");
+    let shown: fn(&&str) -> bool = |line| line.starts_with("| ") && line.contains(" times the error |");
     assert_table("docs/restir_gi.md", "docs/evidence/gi_choices.json", shown, |row| {
         format!(
-            "| {} | {} | {:.2} times the error | {:.2} times the rays | {:.2} |",
+            "| {} | {} | {:.2} times the error | {:.2} times | {:.2} |",
             text(row, "scene"),
             text(row, "instead"),
             number(row, "times the error"),

@@ -19,12 +19,14 @@ fn magnitudes(context: &Context, filling: &str) -> Vec<([f64; 3], f64)> {
     words.chunks_exact(4).map(|word| ([0, 1, 2].map(|channel| f64::from(word[channel])), f64::from(word[3]))).collect()
 }
 
+fn norm(color: [f64; 3]) -> f64 {
+    (color.iter().map(|channel| channel * channel).sum::<f64>() / 3.0).sqrt()
+}
+
 #[test]
 fn magnitudes_are_those_of_their_formulas_over_forty_decades() {
     let Some(context) = context() else { return };
-    let norm = |c: [f64; 3]| (c.iter().map(|channel| channel * channel).sum::<f64>() / 3.0).sqrt();
-    let formulas: [(&str, &dyn Fn([f64; 3]) -> f64); 2] = [("luminance", &luminance), ("norm", &norm)];
-    for (filling, formula) in formulas {
+    for (filling, formula) in [("luminance", luminance as fn([f64; 3]) -> f64), ("norm", norm)] {
         let found = magnitudes(&context, filling);
         let decades = found
             .iter()
