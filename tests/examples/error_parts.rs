@@ -5,36 +5,21 @@
 //! cargo run -p aquifer-tests --example error_parts -- FILE COMMIT DATE [SCENE]
 //! ```
 //!
-//! A reservoir keeps one sample, whose luminance is averaged over all that were merged into it; its hue is not. And light that is found in fewer than
+//! A reservoir keeps one sample, whose target is averaged over all that were merged into it; what else its colour has, its hue, is not. And light that is found in fewer than
 //! one of the paths that a reservoir stands for is not averaged at all: it shines seldom, and then in many pixels and frames.
 
-use aquifer_tests::{
-    context,
-    error_parts::{Frame, SEEDS, measure, reference},
-    evidence::Evidence,
-    scene,
-};
+use aquifer_tests::error_parts::{Frame, SEEDS, of_each_scene};
 use serde_json::json;
 
-const SCENES: [&str; 6] = ["sunlit_wall", "door_ajar", "cornell", "sun_room", "glossy", "animated"];
 /// The pass that colours, frames before the one that is measured.
 const GRAPHS: [(&str, &str, u32); 3] =
     [("path_tracer_indirect", "path_tracer", 0), ("restir_gi_unbiased", "shade", 32), ("restir_gi", "shade", 32)];
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [file, commit, date, only @ ..] = &arguments[..] else {
-        eprintln!("error_parts FILE COMMIT DATE [SCENE]");
-        std::process::exit(2);
-    };
-    let Some(context) = context() else { std::process::exit(75) };
-    let mut evidence = Evidence::open(file, commit, date, &context);
-    for name in SCENES.into_iter().filter(|name| only.is_empty() || only.iter().any(|it| it == name)) {
-        let scene = scene(name);
-        let reference = reference(&context, &scene, name);
+    of_each_scene("error_parts", |name, measure, evidence| {
         let mut one_path = None;
         for (graph, pass, warm_up) in GRAPHS {
-            let error = measure(&context, &scene, name, Frame { graph, pass, warm_up, settings: &[] }, &reference);
+            let error = measure(Frame { graph, pass, warm_up, settings: &[] });
             let (its_error, its_rays) = *one_path.get_or_insert((error.mse, error.rays_a_pixel));
             let found = json!({
                 "seeds": SEEDS, "MSE": error.mse, "rays a pixel": error.rays_a_pixel, "share of hue": error.hue, "share of few pixels": error.few,
@@ -43,5 +28,5 @@ fn main() {
             eprintln!("{name}, {graph}: {found}");
             evidence.put(json!({ "scene": name, "graph": graph, "transport": "indirect:2" }), found);
         }
-    }
+    });
 }

@@ -1,9 +1,10 @@
 //! One frame of indirect light against path tracing with many samples: its square error, what that is made of, and how many rays the frame took.
 
 use crate::{
-    Parts,
+    Parts, context,
     cost::costs,
-    fair_settings,
+    evidence::Evidence,
+    fair_settings, scene,
     seeds::{path_traced_parts, shaded},
 };
 use aquifer_lab::{
@@ -20,6 +21,27 @@ pub const SEEDS: u64 = 16;
 const REFERENCE_FRAMES: u32 = 1024;
 /// Of all pixels, those of the largest errors.
 const FEW: f64 = 0.005;
+
+const SCENES: [&str; 6] = ["sunlit_wall", "door_ajar", "cornell", "sun_room", "glossy", "animated"];
+
+/// Reads `FILE COMMIT DATE [SCENE …]` and tells `each` of every scene that is asked for: its name, what measures frames of it, and where rows go.
+///
+/// # Panics
+/// When anything is wrong.
+pub fn of_each_scene(program: &str, mut each: impl FnMut(&str, &dyn Fn(Frame) -> Error, &mut Evidence)) {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [file, commit, date, only @ ..] = &arguments[..] else {
+        eprintln!("{program} FILE COMMIT DATE [SCENE …]");
+        std::process::exit(2);
+    };
+    let Some(context) = context() else { std::process::exit(75) };
+    let mut evidence = Evidence::open(file, commit, date, &context);
+    for name in SCENES.into_iter().filter(|name| only.is_empty() || only.iter().any(|it| it == name)) {
+        let scene = scene(name);
+        let reference = reference(&context, &scene, name);
+        each(name, &|frame| measure(&context, &scene, name, frame, &reference), &mut evidence);
+    }
+}
 
 /// What is measured.
 #[derive(Clone, Copy)]
@@ -52,10 +74,7 @@ fn centred() -> View {
 }
 
 /// Two bounces by path tracing.
-///
-/// # Panics
-/// When the device fails.
-pub fn reference(context: &Context, scene: &Arc<Scene>, name: &str) -> Film {
+fn reference(context: &Context, scene: &Arc<Scene>, name: &str) -> Film {
     let graph = "extends = 'path_tracer.toml'\ntransport = 'indirect:2'";
     let parts = path_traced_parts(scene, graph, centred());
     let settings = [parts.settings, fair_settings(name)].concat();
@@ -63,10 +82,7 @@ pub fn reference(context: &Context, scene: &Arc<Scene>, name: &str) -> Film {
 }
 
 /// A frame of that scene.
-///
-/// # Panics
-/// When anything is wrong.
-pub fn measure(context: &Context, scene: &Arc<Scene>, name: &str, frame: Frame, reference: &Film) -> Error {
+fn measure(context: &Context, scene: &Arc<Scene>, name: &str, frame: Frame, reference: &Film) -> Error {
     let text = format!("extends = '{}.toml'\ntransport = 'indirect:2'", frame.graph);
     let color = format!("{}.color", frame.pass);
     let settings = [fair_settings(name), frame.settings].concat();
