@@ -1,7 +1,8 @@
 //! The first bounce: which way it goes, and the random numbers of all that comes after it.
 //!
 //! Longer paths can be left to a share of the tiles of the image, so that whole groups of a GPU take the same way: L̂ = L₁ + (passes ? L₂₊ / p : 0)
-//! has the mean of L₁ + L₂₊ for any p > 0 (Ouyang et al. 2021, § 5, with tiles of 64×32 and p = 0.25).
+//! has the mean of L₁ + L₂₊ for any p > 0 (Ouyang et al. 2021, § 5, with tiles of 64×32 and p = 0.25). A picture of one tile or two tosses one
+//! coin a frame: it would pass in one frame of four, and neither the time nor the rays of a frame would tell what frames take. So tiles scale.
 
 import package::base::math::{frame_of};
 import package::base::rng::{Rng, pcg4d, rng_bits, rng_next4, rng_vertex};
@@ -22,9 +23,14 @@ override tile_width: u32 = 64u;
 /// Pixels down a tile.
 /// @range 1 1024
 override tile_height: u32 = 32u;
+/// Rows of the image that tiles are meant for: they scale with the image, in steps of 8×4 pixels. 0: they do not.
+/// @range 0 16384
+override tile_rows: u32 = 1080u;
 
 /// Beyond the vertices of any path: the numbers of tiles are not those of pixels.
 const TILE: u32 = 0xffffffu;
+/// Pixels that the threads of a group are given together.
+const GROUP: vec2<u32> = vec2<u32>(8u, 4u);
 
 /// Unit direction with its density by solid angle; 0 where nothing was drawn.
 struct Direction { direction: vec3<f32>, pdf: f32 }
@@ -61,7 +67,13 @@ fn onward(seed: vec2<u32>) -> f32 {
 fn tile_passes(at: Surface) -> bool {
     if (onward_share >= 1.0) { return true; }
     let pixel = vec2<u32>(max(project(camera_at(at.when), at.position).xy, vec2<f32>(0.0)));
-    var coin = rng_for(pixel / vec2<u32>(tile_width, tile_height));
+    var coin = rng_for(pixel / tile());
     rng_vertex(&coin, TILE);
     return rng_next4(&coin).x < onward_share;
+}
+
+fn tile() -> vec2<u32> {
+    let asked = vec2<u32>(tile_width, tile_height);
+    if (tile_rows == 0u) { return asked; }
+    return max(asked * frame.extent.y / max(tile_rows, 1u) / GROUP, vec2<u32>(1u)) * GROUP;
 }

@@ -67,17 +67,17 @@ render wall_inverted restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" s
 # Figure 9: bias at shadow edges.
 render box_truth path_tracer_indirect cornell indirect:2 192x108 "$many" path_tracer.samples=8
 render box_unbiased restir_gi_unbiased cornell indirect:2 192x108 "$many"
-render box_untested restir_gi_unbiased cornell indirect:2 192x108 "$many" slots.visibility=untested
+render box_tuned restir_gi_tuned cornell indirect:2 192x108 "$many"
 render box_biased restir_gi cornell indirect:2 192x108 "$many"
 
 # Relative differences of luminance from path tracing, means of 4×4 pixels: blue too dark, red too bright.
-for name in wall_on wall_off wall_inverted box_unbiased box_untested box_biased; do
+for name in wall_on wall_off wall_inverted box_unbiased box_tuned box_biased; do
     truth=${name%_*}_truth
     "${CARGO_TARGET_DIR:-target}/debug/aquifer" diff "$out/$name.exr" "$out/$truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
     convert "$out/$name-difference.png" -filter box -resize 25% -filter point -resize 400% "$out/$name-bias.png"
 done
 beside 150 "$out/wall_truth.png" "$out/wall_on-bias.png" "$out/wall_off-bias.png" "$out/wall_inverted-bias.png" |
     convert miff:- -quality 90 docs/images/jacobian.jpg
-beside 150 "$out/box_truth.png" "$out/box_unbiased-bias.png" "$out/box_untested-bias.png" "$out/box_biased-bias.png" |
+beside 150 "$out/box_truth.png" "$out/box_unbiased-bias.png" "$out/box_tuned-bias.png" "$out/box_biased-bias.png" |
     convert miff:- -quality 90 docs/images/shadow_edges.jpg
 grep -H "pixels, mean" "$out"/*.txt

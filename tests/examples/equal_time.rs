@@ -14,7 +14,7 @@ use std::process::{Command, Stdio};
 struct Subject {
     name: &'static str,
     transport: &'static str,
-    graphs: [&'static str; 3],
+    graphs: &'static [&'static str],
     scenes: &'static [&'static str],
 }
 
@@ -22,13 +22,13 @@ const SUBJECTS: [Subject; 2] = [
     Subject {
         name: "di",
         transport: "direct",
-        graphs: ["path_tracer", "restir_di", "restir_di_unbiased"],
+        graphs: &["path_tracer", "restir_di", "restir_di_unbiased"],
         scenes: &["many_lights", "cornell"],
     },
     Subject {
         name: "gi",
         transport: "indirect:2",
-        graphs: ["path_tracer_indirect", "restir_gi_unbiased", "restir_gi"],
+        graphs: &["path_tracer_indirect", "restir_gi_unbiased", "restir_gi_tuned", "restir_gi"],
         scenes: &["sunlit_wall", "door_ajar", "cornell", "sun_room", "glossy", "animated"],
     },
 ];

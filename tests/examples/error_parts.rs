@@ -12,8 +12,12 @@ use aquifer_tests::error_parts::{Frame, SEEDS, of_each_scene};
 use serde_json::json;
 
 /// The pass that colours, frames before the one that is measured.
-const GRAPHS: [(&str, &str, u32); 3] =
-    [("path_tracer_indirect", "path_tracer", 0), ("restir_gi_unbiased", "shade", 32), ("restir_gi", "shade", 32)];
+const GRAPHS: [(&str, &str, u32); 4] = [
+    ("path_tracer_indirect", "path_tracer", 0),
+    ("restir_gi_unbiased", "shade", 32),
+    ("restir_gi_tuned", "shade", 32),
+    ("restir_gi", "shade", 32),
+];
 
 fn main() {
     of_each_scene("error_parts", |name, measure, evidence| {

@@ -18,7 +18,8 @@ use std::{f32::consts::PI, sync::Arc};
 const SIDE: u32 = 224;
 const LIGHTS: [usize; 5] = [10, 100, 1000, 10_000, 100_000];
 const DIRECT: [&str; 3] = ["light_sampling", "restir_di", "restir_di_unbiased"];
-const INDIRECT: [&str; 5] = ["path_tracer_indirect", "restir_gi", "restir_gi_validated", "restir_gi_unbiased", "restir_full"];
+const INDIRECT: [&str; 6] =
+    ["path_tracer_indirect", "restir_gi", "restir_gi_validated", "restir_gi_tuned", "restir_gi_unbiased", "restir_full"];
 const SCENES: [&str; 2] = ["cornell", "door_ajar"];
 const SIZE: [u32; 2] = [256, 144];
 

@@ -52,8 +52,8 @@ const STEP: f32 = 1.0 / 30.0;
 /// Of a part of a reference, of eight paths each: how many at a time, and at most.
 const REFERENCE_FRAMES: u32 = 512;
 const MOST_REFERENCE_FRAMES: u32 = 16_384;
-/// Share that a reference may have of the variance that resolves a row.
-const REFERENCE_SHARE: f64 = 0.35;
+/// Share that a reference may have of the variance that resolves a row: while seeds are added, and of a row that all seeds have not resolved.
+const REFERENCE_SHARES: [f64; 2] = [0.35, 0.15];
 
 /// What is shown of a kind of light.
 struct Subject {
@@ -295,31 +295,37 @@ impl Measuring<'_> {
         let scene = if lit.scene == LAMPS { lamps(FRAME as f32 * STEP) } else { gliding(lit.scene, motion) };
         let moving = View { step: STEP, centred: true, ..View::default() };
         let name = format!("{}-{}-{}-{motion}", self.subject.name, lit.scene, lit.transport).replace([' ', ':'], "_");
-        let reference = self.reference(&scene, &moving, &name);
-        let judged =
-            |moments: &BlockMoments| compare_blocks(&moments.blocks(), &reference, &(self.subject.test)()).expect("grids of one size");
-        let settled = |moments: &BlockMoments| moments.count() >= FEWEST_SEEDS && moments.count() >= enough(judged(moments).verdict);
+        let mut reference = self.reference(&scene, &moving, &name, REFERENCE_SHARES[0]);
+        let judged = |moments: &BlockMoments, reference: &Blocks| {
+            compare_blocks(&moments.blocks(), reference, &(self.subject.test)()).expect("grids of one size")
+        };
+        let settled = |moments: &BlockMoments, reference: &Blocks| {
+            moments.count() >= FEWEST_SEEDS && moments.count() >= enough(judged(moments, reference).verdict)
+        };
         let graph = format!(
             "extends = '{}.toml'\ntransport = '{}'\n[slots]\nmis = '{mis}'\n{}{}",
             self.subject.graph, lit.transport, lit.slots, lit.ours
         );
         let further = lit.by_rule.iter().filter(|(rule, _)| *rule == mis).flat_map(|(_, settings)| *settings);
         let settings: Vec<&str> = self.subject.settings.iter().chain(lit.settings).chain(further).copied().collect();
-        let parts = Parts { settings: &settings, keep: &["shade.color"], view: moving, ..Parts::new(&scene, &graph) };
+        let parts = Parts { settings: &settings, keep: &["shade.color"], view: moving.clone(), ..Parts::new(&scene, &graph) };
         let mut renderer = parts.renderer(self.context);
         let mut shown = Shown::open(self.folder.join(format!("{name}-{mis}.json")), json!({ "graph": graph, "settings": settings }));
         let most = goal.min(shown.moments.count() + PART);
-        while shown.moments.count() < most && Instant::now() < self.end && !settled(&shown.moments) {
+        while shown.moments.count() < most && Instant::now() < self.end && !settled(&shown.moments, &reference) {
             let from = shown.moments.count();
             add_seeds(&mut renderer, FRAME, from..most.min(from + FEWEST_SEEDS), &mut shown.moments);
             shown.write();
         }
         let moments = &shown.moments;
+        if moments.count() >= MOST_SEEDS && judged(moments, &reference).verdict == Verdict::NotResolved {
+            reference = self.reference(&scene, &moving, &name, REFERENCE_SHARES[1]);
+        }
         if moments.count() > 0 {
-            let found = judged(moments);
+            let found = judged(moments, &reference);
             eprintln!("{}, {}, {motion}, {mis}, {} seeds: {found}", lit.scene, lit.transport, moments.count());
             let mut row = told(&found);
-            if !settled(moments) {
+            if !settled(moments, &reference) {
                 row["verdict"] = json!(Verdict::NotResolved.to_string());
             }
             row["seeds"] = json!(moments.count());
@@ -328,7 +334,7 @@ impl Measuring<'_> {
             row["settings"] = json!(settings);
             evidence.put(key, row);
         }
-        if settled(moments) {
+        if settled(moments, &reference) {
             End::Settled
         } else if moments.count() >= goal {
             End::Open
@@ -337,12 +343,12 @@ impl Measuring<'_> {
         }
     }
 
-    /// At the moment of the frame that is compared, with a small share of the variance that resolves a row. It has parts, a file each with its frames in
+    /// At the moment of the frame that is compared, with that share of the variance that resolves a row. It has parts, a file each with its frames in
     /// its name, so that one which is not fine enough goes on.
-    fn reference(&self, scene: &Arc<Scene>, moving: &View, name: &str) -> Blocks {
+    fn reference(&self, scene: &Arc<Scene>, moving: &View, name: &str, share: f64) -> Blocks {
         let blocks = |parts: &[(u32, Film)]| Blocks::of_film(&joined(parts), SIDE, Quantity::Luminance);
         // A film beside itself has twice its variance.
-        let shrink = (2.0 * REFERENCE_SHARE).sqrt();
+        let shrink = (2.0 * share).sqrt();
         let test = (self.subject.test)();
         let fine = BlockTest { overall_error: shrink * test.overall_error, block_error: shrink * test.block_error, ..test };
         let beside_itself = |parts: &[(u32, Film)]| compare_blocks(&blocks(parts), &blocks(parts), &fine).expect("grids of one size");

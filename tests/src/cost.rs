@@ -5,14 +5,14 @@ use aquifer_graph::{Direction, Life, Plan};
 use aquifer_render::{Context, Renderer};
 use serde_json::{Value, json};
 
-/// Frames that are run; times are medians over them.
+/// Frames that are run; times are medians over them. Rays are means over as many, after these.
 const FRAMES: u32 = 12;
 
 /// What only shows the picture.
 const SHOWING: [&str; 2] = ["accumulate", "tonemap"];
 
-/// The costs of every pass that makes the picture, and what a pixel's reservoirs take. Rays are those of the last frame, counted in a run of its own,
-/// since counting takes time.
+/// The costs of every pass that makes the picture, and what a pixel's reservoirs take. Rays are counted in a run of its own, since
+/// counting takes time.
 ///
 /// # Panics
 /// When anything is wrong.
@@ -30,9 +30,11 @@ pub fn costs(context: &Context, parts: &Parts<'_>) -> Value {
         }
     }
     let ms = |node: &String| timings.passes.iter().find(|time| time.pass == *node).and_then(|time| time.median_ms).unwrap_or_default();
-    let rays = rays(context, parts, passes.iter().flat_map(|(_, nodes)| nodes));
+    let every: Vec<String> = passes.iter().flat_map(|(_, nodes)| nodes).cloned().collect();
+    let rays = rays_of_frames(context, parts, &every);
+    let mean_of = |node: &String| every.iter().position(|it| it == node).map_or(0.0, |i| rays[i].iter().sum::<f64>() / f64::from(FRAMES));
     let of_pass = |(pass, nodes): &(&str, Vec<String>)| {
-        let rays: f64 = nodes.iter().map(|node| rays.iter().find(|(name, _)| name == node).map_or(0.0, |(_, rays)| *rays)).sum();
+        let rays: f64 = nodes.iter().map(mean_of).sum();
         json!({ "pass": pass, "ms": rounded(nodes.iter().map(ms).sum(), 100.0), "rays a pixel": rounded(rays, 1000.0) })
     };
     let all: f64 = passes.iter().flat_map(|(_, nodes)| nodes).map(ms).sum();
@@ -52,20 +54,26 @@ fn run(renderer: &mut Renderer) {
     renderer.finish().unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// Rays a pixel of every node in the last frame.
-fn rays<'a>(context: &Context, parts: &Parts<'_>, nodes: impl Iterator<Item = &'a String>) -> Vec<(String, f64)> {
-    let nodes: Vec<String> = nodes.cloned().collect();
+/// Rays a pixel of every node, in each of the frames after as many others.
+///
+/// # Panics
+/// When anything is wrong.
+pub fn rays_of_frames(context: &Context, parts: &Parts<'_>, nodes: &[String]) -> Vec<Vec<f64>> {
     let keep: Vec<String> = nodes.iter().map(|node| format!("{node}.traced")).collect();
     let keep: Vec<&str> = keep.iter().map(String::as_str).collect();
     let settings: Vec<&str> = parts.settings.iter().copied().chain(["slots.trace=counted"]).collect();
     let mut renderer = Parts { settings: &settings, keep: &keep, ..parts.clone() }.renderer(context);
     run(&mut renderer);
     let pixels = f64::from(parts.size[0] * parts.size[1]);
-    let mut count = |name: &str| {
-        let words = renderer.read_f32(name).unwrap_or_else(|error| panic!("{error}"));
-        f64::from(words[0].to_bits()) / pixels
-    };
-    nodes.into_iter().zip(keep).map(|(node, port)| (node, count(port))).collect()
+    let mut found = vec![Vec::new(); nodes.len()];
+    for _ in 0..FRAMES {
+        renderer.frame().unwrap_or_else(|error| panic!("{error}"));
+        for (rays, port) in found.iter_mut().zip(&keep) {
+            let words = renderer.read_f32(port).unwrap_or_else(|error| panic!("{error}"));
+            rays.push(f64::from(words[0].to_bits()) / pixels);
+        }
+    }
+    found
 }
 
 /// Bytes a pixel. Every wired port counts once, and neighbours' records not at all: the least that a pass must move.

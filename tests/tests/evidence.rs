@@ -256,8 +256,10 @@ fn the_table_of_the_light_change_is_its_evidence() {
         let by_frame = row["error / converged by frame"].as_array().expect("a number for each frame");
         let at = |frame: usize| by_frame[frame].as_f64().expect("a number");
         let errors: Vec<String> = [0, 4, 5, 6, 12, 30, 60].map(|frame| format!("{:.1}", at(frame))).to_vec();
-        let redraw = if text(row, "line").is_empty() { "" } else { ", redraw" };
-        format!("| `{}`{redraw} | {} | {} frames |", text(row, "graph"), errors.join(" | "), number(row, "frames above twice"))
+        let with: String =
+            text(row, "line").lines().map(|line| format!(", `{}`", line.replace("pass.", "").replace(".set.", "."))).collect();
+        let [above, own] = ["frames above twice", "frames above twice its own"].map(|name| number(row, name));
+        format!("| `{}`{with} | {} | {above} | {own} frames |", text(row, "graph"), errors.join(" | "))
     });
 }
 

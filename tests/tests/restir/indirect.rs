@@ -7,7 +7,8 @@ use aquifer_lab::stats::{
 };
 use aquifer_render::View;
 use aquifer_tests::{
-    context,
+    Parts, context,
+    cost::rays_of_frames,
     references::mitsuba,
     scene,
     seeds::{SIDE, Trial},
@@ -71,4 +72,19 @@ fn planted_bugs_of_indirect_light_show() {
         let Some(found) = case.compare() else { return };
         assert_eq!(found.verdict, Verdict::Failed, "{name} does not show: {found}");
     }
+}
+
+#[test]
+fn tiles_of_small_pictures_do_not_pass_all_at_once() {
+    let Some(context) = context() else { return };
+    let scene = scene("cornell");
+    let parts = Parts { settings: &["initial.onward_share=0.25"], ..Parts::new(&scene, "extends = 'restir_gi_initial.toml'") };
+    let spread = |parts: &Parts<'_>| {
+        let rays = rays_of_frames(&context, parts, &["initial".into()]).remove(0);
+        rays.iter().fold(0.0, |most: f64, &it| most.max(it)) / rays.iter().fold(f64::INFINITY, |least, &it| least.min(it))
+    };
+    let (scaled, of_1080_rows) =
+        (spread(&parts), spread(&Parts { settings: &["initial.onward_share=0.25", "initial.tile_rows=0"], ..parts }));
+    assert!(scaled < 1.2, "frames trace up to {scaled:.2} times the rays of others");
+    assert!(of_1080_rows > 1.3, "one tile or two: {of_1080_rows:.2} times");
 }
