@@ -13,7 +13,7 @@
 #     tools/evidence.sh light_change
 #     tools/evidence.sh moving_bias
 #     tools/evidence.sh error_parts [SCENE …]
-#     tools/evidence.sh stress [CASE …]
+#     tools/evidence.sh stress [CASE[:GRAPH]|:GRAPH …]
 #     tools/evidence.sh long [GRAPH …]
 #     tools/evidence.sh leaving_out [MINUTES] [GRAPH@SCENE …]
 #     tools/evidence.sh viewer [MINUTES]
