@@ -59,25 +59,26 @@ done
 convert "$out/cornell.miff" "$out/sunlit_wall.miff" -append -quality 90 docs/images/restir_gi.jpg
 
 # Ouyang et al. 2021, figure 7: the Jacobian of reconnection.
-render wall_truth path_tracer_indirect sunlit_wall indirect:2 192x108 "$many" path_tracer.samples=8
-render wall_on restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many"
-render wall_off restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" spatial.jacobian=off temporal.jacobian=off
-render wall_inverted restir_gi_unbiased sunlit_wall indirect:2 192x108 "$many" spatial.jacobian=inverted temporal.jacobian=inverted
+render wall_on restir_gi_unbiased sunlit_wall indirect:2 160x90 "$many"
+render wall_off restir_gi_unbiased sunlit_wall indirect:2 160x90 "$many" spatial.jacobian=off temporal.jacobian=off
+render wall_inverted restir_gi_unbiased sunlit_wall indirect:2 160x90 "$many" spatial.jacobian=inverted temporal.jacobian=inverted
 
 # Figure 9: bias at shadow edges.
-render box_truth path_tracer_indirect cornell indirect:2 192x108 "$many" path_tracer.samples=8
-render box_unbiased restir_gi_unbiased cornell indirect:2 192x108 "$many"
-render box_tuned restir_gi_tuned cornell indirect:2 192x108 "$many"
-render box_biased restir_gi cornell indirect:2 192x108 "$many"
+render box_unbiased restir_gi_unbiased cornell indirect:2 160x90 "$many"
+render box_tuned restir_gi_tuned cornell indirect:2 160x90 "$many"
+render box_biased restir_gi cornell indirect:2 160x90 "$many"
 
 # Relative differences of luminance from path tracing, means of 4×4 pixels: blue too dark, red too bright.
 for name in wall_on wall_off wall_inverted box_unbiased box_tuned box_biased; do
-    truth=${name%_*}_truth
+    case $name in
+    wall_*) truth=sunlit_wall_truth ;;
+    box_*) truth=cornell_truth ;;
+    esac
     "${CARGO_TARGET_DIR:-target}/debug/aquifer" diff "$out/$name.exr" "$out/$truth.exr" --heat "$out/$name-difference.png" --heat-of difference >"$out/$name.txt"
     convert "$out/$name-difference.png" -filter box -resize 25% -filter point -resize 400% "$out/$name-bias.png"
 done
-beside 150 "$out/wall_truth.png" "$out/wall_on-bias.png" "$out/wall_off-bias.png" "$out/wall_inverted-bias.png" |
+beside 180 "$out/sunlit_wall_truth.png" "$out/wall_on-bias.png" "$out/wall_off-bias.png" "$out/wall_inverted-bias.png" |
     convert miff:- -quality 90 docs/images/jacobian.jpg
-beside 150 "$out/box_truth.png" "$out/box_unbiased-bias.png" "$out/box_tuned-bias.png" "$out/box_biased-bias.png" |
+beside 180 "$out/cornell_truth.png" "$out/box_unbiased-bias.png" "$out/box_tuned-bias.png" "$out/box_biased-bias.png" |
     convert miff:- -quality 90 docs/images/shadow_edges.jpg
 grep -H "pixels, mean" "$out"/*.txt
