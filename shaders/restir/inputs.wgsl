@@ -30,6 +30,12 @@ struct Input {
 /// @why where things move, last frame's samples are not weighted by the targets that they were made with
 override history_world: u32 = 0u;
 
+/// Where p̂ |∂T/∂x| at the one end of a shift and p̂ at the other differ by a larger factor, the shift is taken not to exist; 0: nowhere. Being the same
+/// both ways it biases no rule that is unbiased without it. It bounds what an input brings under shares by confidence alone (`mis = contribution`), which
+/// do not know that an input could hardly have made a sample: narrow lobes that point elsewhere otherwise bring few large pieces.
+/// @range 0 1000000
+override target_limit: f32 = 0.0;
+
 /// Surfaces of this frame.
 @group(1) @binding(10) var<storage, read> surface: array<SurfaceRecord>;
 /// Reservoirs of this frame.
@@ -77,9 +83,16 @@ struct Moved { sample: Sample, p_hat: f32, jacobian: f32 }
 
 fn move_to(s: Sample, src: Surface, dst: Surface) -> Moved {
     let t = shift(s, src, dst);
-    if (t.jacobian <= 0.0 || t.p_hat <= 0.0) { return Moved(t.sample, 0.0, 0.0); }
+    if (t.jacobian <= 0.0 || t.p_hat <= 0.0 || is_too_unlike(t.p_hat * t.jacobian, s, src)) { return Moved(t.sample, 0.0, 0.0); }
     if (IN_TARGET && !visible(t.sample, dst)) { return Moved(t.sample, 0.0, 0.0); }
     return Moved(t.sample, t.p_hat, t.jacobian);
+}
+
+/// Is the target `there`, where `s` is carried to, beyond `target_limit` of what it is at home?
+fn is_too_unlike(there: f32, s: Sample, src: Surface) -> bool {
+    if (target_limit <= 0.0) { return false; }
+    let here = p_hat(s, src);
+    return max(there, here) > target_limit * min(there, here);
 }
 
 /// p̂_{←i}(y) of the input at `src`, for y of the domain of `at`.

@@ -1,6 +1,6 @@
 //! Every rule, with visibility in the target and at shading, of 1 to 9 inputs, against the closed form.
 
-use crate::toy::{difference, estimates, graph, renderer};
+use crate::toy::{LIMIT, difference, estimates, graph, renderer};
 use aquifer_lab::stats::{Difference, Moments, Rule, Verdict, difference::largest_error};
 use aquifer_render::Context;
 use aquifer_tests::context;
@@ -12,12 +12,12 @@ const RULE: Rule = Rule::Equivalent { alpha: 0.05 };
 /// Frames of 32,768 trials.
 const MOST_FRAMES: u64 = 400;
 
-/// From the closed form, for 1 to 9 inputs, until `enough`.
-fn measure(context: &Context, rule: &str, visibility: &str, enough: impl FnMut(&[Moments]) -> bool) -> Vec<Difference> {
-    let mut renderer = renderer(context, &graph(rule, visibility, 12), &[], &[]);
+/// From the closed form, for 1 to 9 inputs, until `enough`; `setting` is of the pass that combines.
+fn measure(context: &Context, rule: &str, visibility: &str, setting: &str, enough: impl FnMut(&[Moments]) -> bool) -> Vec<Difference> {
+    let mut renderer = renderer(context, &(graph(rule, visibility, 12) + setting), &[], &[]);
     let begin = std::time::Instant::now();
     let found = estimates(&mut renderer, enough);
-    eprintln!("{rule}, {visibility}, {} trials in {:.1?}:", found[0].count(), begin.elapsed());
+    eprintln!("{rule}, {visibility}, {setting} {} trials in {:.1?}:", found[0].count(), begin.elapsed());
     for (count, moments) in (1..).zip(&found) {
         let found = difference(moments);
         eprintln!("  {count} inputs: {:+.4} % ± {:.4} %", 100.0 * found.value, 100.0 * found.standard_error);
@@ -43,10 +43,12 @@ fn unbiased_rules_give_the_closed_form() {
     let Some(context) = context() else { return };
     let mut wrong = Vec::new();
     for rule in ["contribution", "balance", "pairwise"] {
-        for visibility in ["at_shading", "in_target"] {
-            for (count, found) in (1..).zip(measure(&context, rule, visibility, resolved())) {
+        // That the limit holds both ways is asked of the rule it is for; that shares sum to one within it, of every rule (`partition`).
+        let limited = (rule == "contribution").then_some(("in_target", LIMIT));
+        for (visibility, setting) in [("at_shading", ""), ("in_target", "")].into_iter().chain(limited) {
+            for (count, found) in (1..).zip(measure(&context, rule, visibility, setting, resolved())) {
                 if found.judge(BAND, RULE) != Verdict::Passed {
-                    wrong.push((rule, visibility, count, found));
+                    wrong.push((rule, visibility, setting, count, found));
                 }
             }
         }
@@ -58,7 +60,7 @@ fn unbiased_rules_give_the_closed_form() {
 fn biased_parts_miss_it() {
     let Some(context) = context() else { return };
     for (rule, visibility) in [("constant", "at_shading"), ("constant", "in_target"), ("balance", "reuse")] {
-        let found = measure(&context, rule, visibility, |_| true);
+        let found = measure(&context, rule, visibility, "", |_| true);
         assert!(found[0].p_different() > 1e-4, "{rule}, {visibility}: one input leaves nothing to weight: {:?}", found[0]);
         for (count, found) in (1..).zip(found).skip(1) {
             assert!(found.p_outside(BAND) < 1e-6, "{rule}, {visibility}, {count} inputs: {found:?}");

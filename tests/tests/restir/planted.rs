@@ -14,7 +14,7 @@ struct Bug {
     visibility: &'static str,
 }
 
-const BUGS: [Bug; 11] = [
+const BUGS: [Bug; 12] = [
     Bug {
         name: "inverted Jacobian",
         module: SHARED,
@@ -45,6 +45,14 @@ const BUGS: [Bug; 11] = [
         what: "let x = move_to(y, at, src);",
         by: "let x = shift(y, at, src);",
         rule: "balance",
+        visibility: "in_target",
+    },
+    Bug {
+        name: "a limit that holds one way",
+        module: SHARED,
+        what: "    if (target_limit <= 0.0) { return false; }\n    let here = p_hat(s, src);\n    return max(there, here) > target_limit * min(there, here);",
+        by: "    return there > 1.5 * p_hat(s, src);",
+        rule: "contribution",
         visibility: "in_target",
     },
     Bug {

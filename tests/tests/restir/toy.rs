@@ -118,7 +118,10 @@ pub const SIZE: [u32; 2] = [9 * 128, 256];
 /// Most inputs of a rule.
 pub const INPUTS: usize = PIXELS.len();
 
-/// A graph that combines what `initial` makes of the toy by a rule, from this many candidates.
+/// A `target_limit` that refuses many of the toy's shifts and leaves many others.
+pub const LIMIT: &str = "set.target_limit = 1.5";
+
+/// A graph that combines what `initial` makes of the toy by a rule, from this many candidates. What is added to it is of the pass `combine`.
 pub fn graph(mis: &str, visibility: &str, candidates: u32) -> String {
     format!(
         "transport = 'direct'
@@ -132,7 +135,8 @@ set.candidates = {candidates}
 in.surface = 'toy_gbuffer.surface'
 in.current = 'initial.reservoir'
 in.previous_surface = 'toy_gbuffer.surface@prev'
-in.history = 'initial.reservoir@prev'"
+in.history = 'initial.reservoir@prev'
+"
     )
 }
 

@@ -100,6 +100,9 @@ impl Difference {
             Rule::Estimate => Verdict::Failed,
             Rule::Exceeds { alpha } if p_outside <= alpha => Verdict::Failed,
             Rule::Exceeds { .. } => Verdict::Passed,
+            Rule::Inside { .. } if inside => Verdict::Passed,
+            Rule::Inside { alpha } if p_outside <= alpha => Verdict::Failed,
+            Rule::Inside { .. } => Verdict::NotResolved,
             Rule::Equivalent { alpha } if p_equivalent <= alpha => Verdict::Passed,
             Rule::Equivalent { alpha } if p_outside <= alpha => Verdict::Failed,
             Rule::Equivalent { .. } => Verdict::NotResolved,
@@ -135,6 +138,12 @@ pub enum Rule {
     Estimate,
     /// Unless it is shown to be outside at `alpha`. Lenient: noise passes, so resolution must be required beside it.
     Exceeds {
+        /// Significance level.
+        alpha: f64,
+    },
+    /// When the estimate is; it fails when it is shown to be outside at `alpha`. An estimate outside by what may be noise is not resolved: of many
+    /// estimates some are, and more samples tell.
+    Inside {
         /// Significance level.
         alpha: f64,
     },
@@ -198,7 +207,7 @@ mod tests {
         let apart = Difference::normal(0.2, 0.0);
         assert_eq!((apart.p_different(), apart.p_equivalent(0.1), apart.p_outside(0.1)), (0.0, 1.0, 0.0));
         assert_eq!(Difference::normal(f64::NAN, 1.0).judge(1.0, Rule::Estimate), Verdict::Failed);
-        for rule in [Rule::Estimate, Rule::Exceeds { alpha: 0.05 }, Rule::Equivalent { alpha: 0.05 }] {
+        for rule in [Rule::Estimate, Rule::Exceeds { alpha: 0.05 }, Rule::Inside { alpha: 0.05 }, Rule::Equivalent { alpha: 0.05 }] {
             let [nowhere, unknown] = [(f64::NAN, 1.0), (2.0, f64::NAN)]
                 .map(|(value, standard_error)| Difference { value, standard_error, freedom: 3.0 }.judge(1.0, rule));
             assert_eq!([nowhere, unknown], [Verdict::Failed, Verdict::NotResolved], "{rule:?}");
@@ -247,6 +256,8 @@ mod tests {
         let noisy = Difference::normal(0.0, 1.0);
         assert_eq!(noisy.judge(1.0, Rule::Equivalent { alpha: 0.05 }), Verdict::NotResolved);
         assert_eq!(noisy.judge(1.0, Rule::Exceeds { alpha: 0.05 }), Verdict::Passed);
+        let judged_inside = |value| Difference::normal(value, 1.0).judge(1.0, Rule::Inside { alpha: 0.05 });
+        assert_eq!([0.9, 1.5, 5.0].map(judged_inside), [Verdict::Passed, Verdict::NotResolved, Verdict::Failed]);
         assert_eq!(Difference::normal(5.0, 1.0).judge(1.0, Rule::Exceeds { alpha: 0.05 }), Verdict::Failed);
         assert_eq!(Difference::normal(5.0, 1.0).judge(1.0, Rule::Equivalent { alpha: 0.05 }), Verdict::Failed);
     }
