@@ -108,6 +108,8 @@ const MORE: &[&str] = &["initial.candidates=64", "initial.winners=4", "temporal.
 const FORGETFUL: &[&str] = &["temporal.cap=1"];
 /// What shares of confidence do not know: that an input could hardly have made a sample.
 const BOUNDED: &[&str] = &["temporal.target_limit=10", "spatial.target_limit=10"];
+/// Lobes of half a degree, and a camera that moves on by more: what is carried there is the tail of another lobe.
+const CLOSE: &[&str] = &["temporal.target_limit=2", "spatial.target_limit=2"];
 /// Where little of what a pixel sees is lit, more paths a pixel cost less than more seeds; and histories that count less are less alike.
 const DENSE: &[&str] = &["initial.candidates=32", "spatial.cap=8"];
 /// The paper's targets, and its neighbours.
@@ -144,7 +146,7 @@ const SUBJECTS: [Subject; 2] = [
         settings: &["spatial.radius=4.0", "spatial.rows=0.0", "initial.candidates=8"],
         scenes: &[
             Lit { settings: THREE, ..indirect("cornell", "indirect:2", "", LUMINANCE) },
-            Lit { settings: DENSE, by_rule: &[("contribution", BOUNDED)], ..indirect("glossy", "indirect:2", "", EXACT) },
+            Lit { settings: DENSE, by_rule: &[("contribution", CLOSE)], ..indirect("glossy", "indirect:2", "", EXACT) },
             Lit { settings: DENSE, by_rule: &[("contribution", BOUNDED)], ..indirect("door_ajar", "indirect:2", "", EXACT) },
             Lit { settings: DENSE, by_rule: &[("contribution", BOUNDED)], ..indirect("sun_room", "indirect:2", EVENLY, EXACT) },
             Lit { settings: THREE, ..indirect("cornell", "indirect:3", "", LUMINANCE) },
