@@ -70,6 +70,10 @@ fn the_page_of_all_passes_is_current() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/passes.md")).expect("the page");
     let made = aquifer(&["passes", "--markdown"]).succeeds().out;
     assert!(page == made, "docs/passes.md is not what the shaders say: aquifer passes --markdown > docs/passes.md");
+    // A bar in what a shader says of a parameter would be a column of the table more.
+    for row in page.lines().filter(|line| line.starts_with("| `")) {
+        assert_eq!(row.replace(r"\|", "").matches('|').count(), 5, "not four cells: {row}");
+    }
 }
 
 #[test]

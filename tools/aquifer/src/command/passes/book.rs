@@ -56,12 +56,17 @@ fn table(text: &mut String, head: &str, rows: impl Iterator<Item = String>) {
 }
 
 fn port(port: &Port) -> String {
-    format!("| `{}` | {} | {}, {} | {} |", port.name, way(port), port.ty.element, extent(&port.ty.extent), port.doc)
+    format!("| `{}` | {} | {}, {} | {} |", port.name, way(port), port.ty.element, extent(&port.ty.extent), cell(&port.doc))
 }
 
 fn param(param: &Param) -> String {
     let range = param.range.map(|(low, high)| format!("{low} to {high}"));
     let values = if param.choices.is_empty() { range.unwrap_or_default() } else { param.choices.join(", ") };
     let live = if param.live { "" } else { "baked; " };
-    format!("| `{}` | {} | {live}{values} | {} |", param.name, default_of(param), param.doc)
+    format!("| `{}` | {} | {live}{values} | {} |", param.name, default_of(param), cell(&param.doc))
+}
+
+/// Text within a table, where a bar would end the cell.
+fn cell(text: &str) -> String {
+    text.replace('|', r"\|")
 }
