@@ -4,8 +4,8 @@
 #     tools/evidence.sh external [--size 64x36|256x144] [--minutes N] [SCENE:TRANSPORT …]
 #     tools/evidence.sh held_out [SCENE …]
 #     tools/evidence.sh compare_aa
-#     tools/evidence.sh restir_di [MINUTES] [SCENE[:RULE] …]
-#     tools/evidence.sh restir_gi [MINUTES] [SCENE[:RULE] …]
+#     tools/evidence.sh restir_di [MINUTES] [+SEEDS] [SCENE[:RULE] …]
+#     tools/evidence.sh restir_gi [MINUTES] [+SEEDS] [SCENE[:RULE] …]
 #     tools/evidence.sh equal_time di|gi [WxH] [SCENE …]
 #     tools/evidence.sh restir_di_cost
 #     tools/evidence.sh restir_gi_cost
@@ -23,8 +23,8 @@
 # compare_aa: twenty comparisons of graphs with themselves, some minutes; at 5 % one in twenty gives a verdict by chance.
 # Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
-# over. A row wants some 10⁸ to 10⁹ rays. References and seeds so far are kept beside the tables, so that another machine goes on where one stopped: who
-# changes what these graphs do deletes them, and the rows.
+# over; +SEEDS asks for at least so many, also of rows that passed with fewer. A row wants some 10⁸ to 10⁹ rays. References and seeds so far are kept
+# beside the tables, so that another machine goes on where one stopped: who changes what these graphs do deletes them, and the rows.
 # equal_time: a frame of resampling against path tracing in the same time, with the machine to itself; pages are in out/evidence/equal_time.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # indirect_figures: two figures of the paper of ReSTIR GI as numbers: where initial directions come from, what the second bounce brings.

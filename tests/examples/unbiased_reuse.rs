@@ -1,12 +1,13 @@
 //! Is unbiased reuse unbiased? One row for each scene, motion and rule: frame 8 over independent seeds against path tracing.
 //!
 //! ```text
-//! cargo run -p aquifer-tests --example unbiased_reuse -- di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE[:RULE] …]
+//! cargo run -p aquifer-tests --example unbiased_reuse -- di|gi FILE FOLDER COMMIT DATE MINUTES [+SEEDS] [SCENE[:RULE] …]
 //! ```
 //!
 //! FOLDER keeps references and what seeds have shown so far: a run that was stopped goes on where it was. Seeds are added to all rows in turn, twice as
 //! many each time, until a row is resolved or has failed, has its 4,000 seeds, or the time is over. Rows that FILE holds as settled are left alone, of
-//! whichever commit they are: who wants them anew deletes them there. Each part of a row is a process of its own: lavapipe keeps some memory of every
+//! whichever commit they are: who wants them anew deletes them there, and who would know more of one that passed asks for at least so many seeds
+//! (`+1024`). Each part of a row is a process of its own: lavapipe keeps some memory of every
 //! dispatch for as long as a process lives.
 //!
 //! The film is centred, on both sides: what a pixel sees is the same for every seed. With a jittered film the largest part of the noise is edges and
@@ -196,7 +197,7 @@ enum End {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [subject, file, folder, commit, date, minutes, rest @ ..] = &arguments[..] else {
-        eprintln!("unbiased_reuse di|gi FILE FOLDER COMMIT DATE MINUTES [SCENE[:RULE] …]");
+        eprintln!("unbiased_reuse di|gi FILE FOLDER COMMIT DATE MINUTES [+SEEDS] [SCENE[:RULE] …]");
         return ExitCode::from(2);
     };
     let Some(subject) = SUBJECTS.iter().find(|it| it.name == *subject) else {
@@ -205,13 +206,17 @@ fn main() -> ExitCode {
     };
     let minutes: f64 = minutes.parse().expect("MINUTES is a number");
     let end = Instant::now() + Duration::from_secs_f64(60.0 * minutes);
+    let (fewest, rest) = match rest {
+        [first, rest @ ..] if first.starts_with('+') => (first[1..].parse().expect("+SEEDS is a number"), rest),
+        _ => (FEWEST_SEEDS, rest),
+    };
     if let [part, case, goal] = rest
         && part == "part"
     {
         let Some(context) = context() else { return ExitCode::from(75) };
         let case = subject.cases()[case.parse::<usize>().expect("a number of a case")];
         let goal = goal.parse().expect("a number of seeds");
-        let measuring = Measuring { context: &context, subject, case, folder: Path::new(folder), end };
+        let measuring = Measuring { context: &context, subject, case, folder: Path::new(folder), end, fewest };
         return ExitCode::from(measuring.part(goal, Evidence::open(file, commit, date, &context)) as u8);
     }
     fs::create_dir_all(folder).unwrap_or_else(|error| panic!("{folder}: {error}"));
@@ -224,7 +229,7 @@ fn main() -> ExitCode {
             let mut found = End::More;
             while found == End::More && Instant::now() < end {
                 let left = (end - Instant::now()).as_secs_f64() / 60.0;
-                found = in_a_process(&arguments[..5], left, case, goal.min(MOST_SEEDS));
+                found = in_a_process(&arguments[..5], left, fewest, case, goal.min(MOST_SEEDS));
             }
             if found != End::Settled {
                 open.push(case);
@@ -235,21 +240,22 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn in_a_process(arguments: &[String], minutes: f64, case: usize, goal: u64) -> End {
+fn in_a_process(arguments: &[String], minutes: f64, fewest: u64, case: usize, goal: u64) -> End {
     let program = std::env::current_exe().expect("this program");
-    let rest = [format!("{minutes:.2}"), "part".into(), case.to_string(), goal.to_string()];
+    let rest = [format!("{minutes:.2}"), format!("+{fewest}"), "part".into(), case.to_string(), goal.to_string()];
     let status = Command::new(program).args(arguments).args(rest).status().expect("this program runs");
     let ends = [End::Settled, End::Open, End::More];
     ends.into_iter().find(|end| status.code() == Some(*end as i32)).unwrap_or_else(|| panic!("a part of case {case} ended with {status}"))
 }
 
-/// Seeds with which a verdict settles a row.
-fn enough(verdict: Verdict) -> u64 {
-    match verdict {
+/// Seeds with which a verdict settles a row that is to have at least `fewest`.
+fn enough(verdict: Verdict, fewest: u64) -> u64 {
+    let by_itself = match verdict {
         Verdict::Passed => FEWEST_SEEDS,
         Verdict::Failed => FEWEST_TO_FAIL,
         Verdict::NotResolved => MOST_SEEDS,
-    }
+    };
+    by_itself.max(fewest.min(MOST_SEEDS))
 }
 
 /// What seeds have shown so far, kept in a file, and of which graph and settings: of others it would be something else.
@@ -281,6 +287,7 @@ struct Measuring<'a> {
     case: Case,
     folder: &'a Path,
     end: Instant,
+    fewest: u64,
 }
 
 impl Measuring<'_> {
@@ -291,7 +298,7 @@ impl Measuring<'_> {
         let is_settled = |row: &Value| {
             let seeds = row["seeds"].as_u64().unwrap_or_default();
             let verdicts = [Verdict::Passed, Verdict::Failed, Verdict::NotResolved];
-            verdicts.into_iter().any(|verdict| row["verdict"] == verdict.to_string() && seeds >= enough(verdict))
+            verdicts.into_iter().any(|verdict| row["verdict"] == verdict.to_string() && seeds >= enough(verdict, self.fewest))
         };
         if evidence.row(&key).is_some_and(is_settled) {
             return End::Settled;
@@ -304,7 +311,7 @@ impl Measuring<'_> {
             compare_blocks(&moments.blocks(), reference, &(self.subject.test)()).expect("grids of one size")
         };
         let settled = |moments: &BlockMoments, reference: &Blocks| {
-            moments.count() >= FEWEST_SEEDS && moments.count() >= enough(judged(moments, reference).verdict)
+            moments.count() >= FEWEST_SEEDS && moments.count() >= enough(judged(moments, reference).verdict, self.fewest)
         };
         let graph = format!(
             "extends = '{}.toml'\ntransport = '{}'\n[slots]\nmis = '{mis}'\n{}{}",
@@ -329,7 +336,7 @@ impl Measuring<'_> {
             let found = judged(moments, &reference);
             eprintln!("{}, {}, {motion}, {mis}, {} seeds: {found}", lit.scene, lit.transport, moments.count());
             let mut row = told(&found);
-            if !settled(moments, &reference) {
+            if moments.count() < enough(found.verdict, FEWEST_SEEDS) {
                 row["verdict"] = json!(Verdict::NotResolved.to_string());
             }
             row["seeds"] = json!(moments.count());
