@@ -11,7 +11,8 @@ import package::frame::frame::{camera_at, frame, project};
 import package::frame::random::{rng_for};
 import package::surface::{Surface, scatter_sample};
 
-/// Where initial directions are drawn from. Uniform ones have the lower variance at grazing light (Ouyang et al. 2021, fig. 14).
+/// Where initial directions are drawn from. Uniform ones had the lower variance at grazing light in Ouyang et al. 2021, fig. 14,
+/// and have the higher one in docs/restir_gi.md.
 /// @choices hemisphere cosine bsdf
 override source: u32 = 0u;
 /// Share of the tiles whose paths go on after the first bounce; 1: all.

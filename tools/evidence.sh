@@ -12,7 +12,7 @@
 #     tools/evidence.sh indirect_figures
 #     tools/evidence.sh light_change
 #     tools/evidence.sh moving_bias
-#     tools/evidence.sh error_parts [SCENE …]
+#     tools/evidence.sh error_parts|gi_choices [SCENE …]
 #     tools/evidence.sh stress [CASE[:GRAPH]|:GRAPH …]
 #     tools/evidence.sh long [GRAPH …]
 #     tools/evidence.sh leaving_out [MINUTES] [GRAPH@SCENE …]

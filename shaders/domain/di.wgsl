@@ -5,9 +5,9 @@
 //! scene; a light that has gone out has value 0.
 //!
 //! Of a pixel's n candidates, n_b are met by rays drawn from the BSDF and n_l are drawn by slot `proposal`. With q the density by uv that the
-//! proposal is taken for and p_b that of the BSDF, the balance heuristic gives a candidate's share m = n_s p_s / (n_l q + n_b p_b), so that n m times
-//! its contribution weight is n / (n_l q + n_b p_b) for a BSDF ray, and for a proposed one q / (n_l q + n_b p_b) · n W: unbiased for any q > 0, also where
-//! the proposal's own density is not known. A light that no ray can meet has p_b = 0.
+//! proposal is taken for and p_b that of the BSDF, the balance heuristic gives a candidate the MIS weight p_b / (n_l q + n_b p_b) if a BSDF ray met it, and
+//! q / (n_l q + n_b p_b) if it was proposed; n times that times its contribution weight (1 / p_b; the proposal's W) is n / (n_l q + n_b p_b), and
+//! n q W / (n_l q + n_b p_b): unbiased for any q > 0, also where the proposal's own density is not known. A light that no ray can meet has p_b = 0.
 //! @default
 
 import package::base::rng::{Rng, rng_bits, rng_next4};

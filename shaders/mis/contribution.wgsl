@@ -2,7 +2,8 @@
 //! (Bitterli et al. 2020, alg. 6; Ouyang et al. 2021, alg. 4).
 //!
 //! Unbiased: Σ m = 1 over those inputs. O(k) targets, all for one sample; noisy where targets are very unlike, since it asks only for p̂_{←j} > 0.
-//! Z depends on y alone, so that dividing by it after the choice equals weighting by c_i / Z(y_i) before.
+//! Z depends on y alone, so that dividing by it after the choice has the expectation of weighting by c_i / Z(y_i) before (not its noise: samples are
+//! chosen by other shares).
 //! @default
 
 import package::base::rng::{Rng, rng_next4};

@@ -1,6 +1,7 @@
 //! Fills slot `visibility`: targets hold no visibility; one ray decides at shading.
 //!
-//! Unbiased, and the fewest rays. Samples behind an occluder are carried along and shaded black.
+//! Of direct light unbiased, with the fewest rays of the unbiased fillings; of indirect light biased (see its domains).
+//! Samples behind an occluder are carried along and shaded black.
 //! @default
 
 /// Contribution weight; its type says what its reservoir's target holds, so that a graph cannot wire it to a reader that assumes otherwise.

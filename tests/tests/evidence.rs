@@ -290,7 +290,7 @@ fn the_table_of_stress_is_its_evidence() {
     let evidence: Value = serde_json::from_str(&read("docs/evidence/stress.json")).expect("the evidence is JSON");
     let rows = evidence["rows"].as_array().expect("rows");
     let word = |row: &Value| match text(row, "outcome") {
-        "passed" => "pass".to_owned(),
+        "passed" => if row["labelled"] == true { "*pass*" } else { "pass" }.to_owned(),
         "failed" => format!("**{:+.0} %**", 100.0 * number(&row["bias"], "value")),
         "not_resolved" => format!("± {:.0} %", 100.0 * number(&row["bias"], "standard_error")),
         other => other.to_owned(),

@@ -1,6 +1,6 @@
 //! What the comments of a module say: the manual page above it, `///` texts and `@tags` of its declarations, `//! bias:` lines.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, fmt};
 
 /// Text and tags above one declaration.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -33,6 +33,20 @@ impl BiasLine {
             None => None,
         };
         Some(BiasLine { condition, without, why: rest.strip_prefix(':')?.trim().to_owned() })
+    }
+}
+
+/// "Biased with `visibility = at_shading`: why. Not with `visibility = in_target`."
+impl fmt::Display for BiasLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Biased")?;
+        match &self.condition {
+            Some(condition) if condition.contains('=') => write!(f, " with `{condition}`")?,
+            Some(fact) => write!(f, " on scenes with `{fact}`")?,
+            None => {}
+        }
+        write!(f, ": {}.", self.why)?;
+        self.without.iter().try_for_each(|(slot, filling)| write!(f, " Not with `{slot} = {filling}`."))
     }
 }
 

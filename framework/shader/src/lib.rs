@@ -20,6 +20,7 @@ mod locate;
 mod reflect;
 mod slots;
 
+pub use comments::BiasLine;
 pub use compose::{Composed, Specialisation};
 pub use cuts::{Cut, Piece};
 pub use error::ShaderError;

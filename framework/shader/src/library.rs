@@ -1,6 +1,9 @@
 //! Modules by path.
 
-use crate::{ShaderError, comments::Comments};
+use crate::{
+    ShaderError,
+    comments::{BiasLine, Comments},
+};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
@@ -73,6 +76,11 @@ impl Library {
     /// The manual page of one module: the `//!` text at its head, without tags.
     pub fn manual(&self, path: &str) -> Option<String> {
         Some(Comments::read(self.text(path)?).manual)
+    }
+
+    /// The `//! bias` lines at the head of one module.
+    pub fn bias(&self, path: &str) -> Vec<BiasLine> {
+        self.text(path).map(|text| Comments::read(text).bias).unwrap_or_default()
     }
 
     /// Every slot that some module imports, with the modules of its folder: what can fill it.

@@ -26,6 +26,7 @@ pub fn book(registry: &Registry, slots: &Slots) -> Result<String, Failure> {
             let manual = registry.library().manual(&format!("{slot}/{filling}")).unwrap_or_default();
             let default = if slots.get(&slot) == Some(&filling) { " (default)" } else { "" };
             text += &format!("\n### {filling}{default}\n\n{}\n", manual.trim());
+            text.extend(registry.library().bias(&format!("{slot}/{filling}")).iter().map(|line| format!("\n{line}\n")));
         }
     }
     Ok(text)
