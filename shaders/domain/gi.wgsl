@@ -2,8 +2,10 @@
 //! towards that surface (Ouyang et al. 2021).
 //!
 //! The measure is the solid angle of x_s at the pixel's surface; a sample moves between pixels by reconnection to x_s. The radiance is an estimate by
-//! path tracing, kept as it is: for other pixels too, as if x_s were diffuse. Paths count from two scatterings on: what x_s emits itself is direct light.
+//! path tracing, kept as it is: for other pixels too, as if x_s looked the same from all sides. Paths count from two scatterings on: what
+//! x_s emits itself is direct light.
 //! bias (glossy) [domain = gi_path]: the radiance that left a glossy point one way is taken for that of all ways
+//! bias (normal_maps) [domain = gi_path]: the radiance that left a point by a normal turned to one viewer is taken for that of all viewers
 //! bias (moving_objects): radiance found in earlier frames is kept, though what it came from has moved since
 //! bias (moving_lights): radiance found in earlier frames is kept, though lights have moved since
 //! bias (visibility = at_shading) [visibility = in_target]: samples exist only where the pixel that drew them sees them, which no MIS weight knows
@@ -47,7 +49,7 @@ fn draw(at: Surface, index: u32, count: u32, rng: ptr<function, Rng>) -> Drawn {
     let s = surface_at(hit, -bounce.direction, at.when);
     var suffix = suffix_rng(seed);
     let radiance = walk(s, 2u, onward(seed), &suffix);
-    let end = keep(PathEnd(s.position, s.geometric, radiance, seed, -bounce.direction, hit.t));
+    let end = keep(PathEnd(s.position, s.size, s.geometric, radiance, seed, -bounce.direction, hit.t));
     return Drawn(Sample(end), 1.0 / bounce.pdf);
 }
 
@@ -66,7 +68,7 @@ fn p_hat(s: Sample, at: Surface) -> f32 {
 
 fn visible(s: Sample, at: Surface) -> bool {
     let end = recall(s.end);
-    return !occluded(segment(at, end.position, end.normal, at.size), at.when);
+    return !occluded(segment(at, end.position, end.normal, end.size), at.when);
 }
 
 fn shift(s: Sample, src: Surface, dst: Surface) -> Shifted {

@@ -3,8 +3,9 @@
 //! Bitterli et al. 2020, alg. 3. Whether a ray then tests the sample that was kept is slot `visibility`'s to say. In a frame of validation a pixel
 //! that has a history does not draw: it finds what its history's sample stands for anew, from the same random numbers, and where that has
 //! changed, or the sample is hidden, says so on `stale`. The pass that made the history, and those after it, then let it go
-//! (Ouyang et al. 2021, § 5), and in that frame the pixel has its neighbours' samples alone, unless `redraw` has it draw after all. Where neither
-//! lights nor objects move, nothing is validated.
+//! (Ouyang et al. 2021, § 5), and in that frame the pixel has its neighbours' samples alone, unless `redraw` has it draw after all. The history that
+//! is looked at is the one that a pass with the same `normal` and `depth` and without `permute` takes. Where neither lights nor objects move, nothing
+//! is validated.
 //! @needs emissive_meshes punctual_lights environment
 
 import package::frame::frame::{NOW, index_of, inside};
@@ -46,7 +47,8 @@ override winners: u32 = 1u;
 /// @unbiased 0
 /// @why which histories are let go depends on their samples
 override validate_every: u32 = 0u;
-/// A pixel whose history is let go draws in the same frame: these pixels' rays come on top of those of validation.
+/// A pixel whose history's sample no longer holds draws in the same frame: these pixels' rays come on top of those of validation. Pixels whose history
+/// goes for a neighbour's (`spread`) do not draw.
 override redraw: bool = false;
 
 @group(1) @binding(0) var<uniform> params: Params;

@@ -1,6 +1,7 @@
 //! The first reservoir of a pixel: candidates drawn by the domain, one kept.
 //!
-//! Streaming resampled importance sampling (Bitterli et al. 2020, alg. 3). All candidates come from one density, so that m_i = 1 / M.
+//! Streaming resampled importance sampling (Bitterli et al. 2020, alg. 3). All candidates come from one density, so that m_i = 1 / M;
+//! where a domain draws them in two ways, their shares are in the weights that it gives.
 //!
 //! Whether the winner is seen is one coin for all its candidates: with a share q of their light seen, the relative variance that it brings is
 //! (1 - q) / q, however many they are. So K winners may be drawn, each of candidates of its own and tested, and one of them kept. W_k = Σ_k w / p̂(Y_k)

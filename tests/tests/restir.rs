@@ -6,6 +6,8 @@ mod candidates;
 mod combine;
 #[path = "restir/direct.rs"]
 mod direct;
+#[path = "restir/drawn.rs"]
+mod drawn;
 #[path = "restir/full.rs"]
 mod full;
 #[path = "restir/indirect.rs"]

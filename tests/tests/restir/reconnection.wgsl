@@ -42,7 +42,7 @@ fn found(s: Surface, direction: vec3<f32>, normal: vec3<f32>) -> PathEnd {
     let t = select(-1.0, dot(normal, -s.position) / facing, facing < 0.0);
     let p = s.position + t * direction;
     let on = t > 0.0 && length(p) < RADIUS;
-    return PathEnd(p, normal, select(vec3<f32>(0.0), vec3<f32>(1.0, 2.0, 0.5) * (1.0 + 2.0 * p.x + p.y), on), vec2<u32>(0u), -direction, t);
+    return PathEnd(p, 1.0, normal, select(vec3<f32>(0.0), vec3<f32>(1.0, 2.0, 0.5) * (1.0 + 2.0 * p.x + p.y), on), vec2<u32>(0u), -direction, t);
 }
 
 @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
