@@ -16,8 +16,9 @@ import package::surface::{Surface};
 /// @unbiased on
 /// @why without its true value samples count too much or too little at pixels nearer to or farther from what they hit
 override jacobian: u32 = 0u;
-/// Where J or 1 / J is larger the shift is taken not to exist; 0: nowhere; below 1 there is none at all. Being the same both
-/// ways it biases no rule that is unbiased without it. Weights 1/M need it: they do not know that an input could hardly have made a sample, and J is unbounded where a receiver is near to it.
+/// Where J or 1 / J is larger the shift is taken not to exist; 0: nowhere; below 1 there is none at all. Being the same both ways it biases no rule
+/// that is unbiased without it. Weights 1/M need it: they do not know that an input could hardly have made a sample, and J is unbounded where a
+/// receiver is near to it.
 /// @range 0 1000000
 override jacobian_limit: f32 = 0.0;
 

@@ -1,12 +1,12 @@
 //! Fills slot `domain`: indirect light, exact on every material. A sample is the point x_s that a path arrives at, with one of the ways that light reaches
 //! it: where from (ω₃), and how much (L).
 //!
-//! A whole tree of paths behind x_s cannot be evaluated for another viewer, but one branch can: the integrand is
-//! f(x_v; ω) cos · f(x_s; ω₃ → x_v) cos₃ · L, and x_s, ω₃ and L are shared between pixels, so that reconnection's Jacobian is that of ω alone.
-//! A drawn path resamples one of three branches: a proposed light, what the BSDF's ray meets, and the light that comes through what it meets.
-//! The first two find the same emission; their MIS weights enter the contribution weight alone, so that L given (x_s, ω₃) means the same at
-//! every pixel: a share of it kept in L would depend on the pixel that drew it. ω₃ is kept to 16 bits a coordinate, some 4·10⁻⁵ rad, which is less than
-//! a lobe is wide unless its roughness is below some 0.01.
+//! A whole tree of paths behind x_s cannot be evaluated for another viewer, but one branch can: the integrand is f(x_v; ω) cos · f(x_s; ω₃ → x_v)
+//! cos₃ · L, and x_s, ω₃ and L are shared between pixels, so that reconnection's Jacobian is that of ω alone. A drawn path resamples one of three
+//! branches: a proposed light, what the BSDF's ray meets, and the light that comes through what it meets. The first two find the same emission; their
+//! MIS weights enter the contribution weight alone, so that L given (x_s, ω₃) means the same at every pixel: a share of it kept in L would depend on
+//! the pixel that drew it. ω₃ is kept to 16 bits a coordinate, some 4·10⁻⁵ rad, which is less than a lobe is wide unless its roughness is below some
+//! 0.01.
 //! bias (moving_objects): light found in earlier frames is kept, though what it came from has moved since
 //! bias (moving_lights): light found in earlier frames is kept, though lights have moved since
 //! bias (visibility = at_shading) [visibility = in_target]: samples exist only where the pixel that drew them sees them, which no MIS weight knows

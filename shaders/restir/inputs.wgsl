@@ -30,9 +30,10 @@ struct Input {
 /// @why where things move, last frame's samples are not weighted by the targets that they were made with
 override history_world: u32 = 0u;
 
-/// Where p̂ |∂T/∂x| at the one end of a shift and p̂ at the other differ by a larger factor, the shift is taken not to exist; 0: nowhere; below 1 there
-/// is none. Being the same both ways it biases no rule that is unbiased without it. It bounds what an input brings under shares by confidence alone (`mis = contribution`), which
-/// do not know that an input could hardly have made a sample: narrow lobes that point elsewhere otherwise bring few large pieces.
+/// Where p̂ |∂T/∂x| at the one end of a shift and p̂ at the other differ by a larger factor, the shift is taken not to exist; 0: nowhere; below 1
+/// there is none. Being the same both ways it biases no rule that is unbiased without it. It bounds what an input brings under shares by confidence
+/// alone (`mis = contribution`), which do not know that an input could hardly have made a sample: narrow lobes that point elsewhere otherwise bring
+/// few large pieces.
 /// @range 0 1000000
 override target_limit: f32 = 0.0;
 

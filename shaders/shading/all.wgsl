@@ -6,9 +6,9 @@
 //!   Σ_i (w_i / Σw) f(y_i) Σw / p̂(y_i) = Σ_i m_i(y_i) f(y_i) W_i |∂T_i/∂x_i|,
 //!
 //! which is what is written here: the same mean, biased or not, and never more variance (Rao and Blackwell). Where p̂ is the luminance of f,
-//! visibility in both, the luminance of both is the same, and it is the hue of the one sample that is no longer noise. What is
-//! kept for reuse stays one sample. Where slot `visibility` leaves visibility to shading, each input costs a ray. `contribution` knows m_i at no input but the one that was kept:
-//! with it, what was kept is shaded.
+//! visibility in both, the luminance of both is the same, and it is the hue of the one sample that is no longer noise. What is kept for reuse stays
+//! one sample. Where slot `visibility` leaves visibility to shading, each input costs a ray. `contribution` knows m_i at no input but the one that
+//! was kept: with it, what was kept is shaded.
 
 import package::base::math::{is_finite};
 import package::restir::inputs::{Candidate};
