@@ -44,7 +44,8 @@ fn graphs_are_labelled() {
 /// A glossy scene is asked only of the domain that takes every point for diffuse.
 #[test]
 fn facts_of_scenes_bias() {
-    for (domain, facts) in [("gi", vec!["glossy", "moving_lights", "moving_objects"]), ("gi_path", vec!["moving_lights", "moving_objects"])]
+    for (domain, facts) in
+        [("gi", vec!["glossy", "moving_lights", "moving_objects", "normal_maps"]), ("gi_path", vec!["moving_lights", "moving_objects"])]
     {
         let found = check("restir_gi_unbiased", &[&format!("slots.domain={domain}")]).unwrap_or_else(|faults| panic!("{faults}"));
         let given: std::collections::BTreeSet<_> = found.bias_elsewhere().into_iter().filter_map(|finding| finding.given).collect();
