@@ -1,51 +1,39 @@
 //! What a domain's ray met, its test of visibility finds: also far from where numbers are small. Where it does not, every target that holds visibility
 //! takes the sample for one that the pixel could not have drawn, and it is reused by none.
 
-use aquifer_scene::{Lens, Material, Mesh, Node, Scene};
-use aquifer_tests::{Parts, context};
-use glam::{EulerRot, Quat, Vec3, Vec4};
+use aquifer_scenes::{
+    Scene,
+    build::{Shape, Stage, glow, matte},
+};
+use aquifer_tests::{Parts, context, scene};
+use glam::{EulerRot, Quat, Vec3};
 use std::sync::Arc;
 
 /// A small board over a ground whose corners are a kilometre away and lie along no axis of their mesh: places on it are rounded by what the ground's
 /// corners are, off its plane too, and seen from a board whose own corners are small.
 fn board_over_wide_ground() -> Arc<Scene> {
-    let matte = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), metallic: 0.0, specular: 0.0, ..Material::default() };
-    let lamp = Material { emission: Vec3::splat(4.0), ..matte.clone() };
-    let square = |material: u32, corners: Quat, side: f32| {
-        let corner = |x: f32, z: f32| corners * Vec3::new(0.5 * side * x, 0.0, 0.5 * side * z);
-        let positions = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
-        Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], materials: vec![material; 2], ..Mesh::default() }
-    };
+    let mut stage = Stage::new("board_over_wide_ground");
+    let grey = stage.material(matte("grey", [0.5; 3]));
+    let lamp = stage.material(glow("lamp", [4.0; 3]));
     let tilt = Quat::from_euler(EulerRot::YXZ, 0.7, 0.3, -0.2);
-    let place = |mesh: u32, translation: Vec3, rotation: Quat| Node {
-        mesh: Some(mesh),
-        translation,
-        rotation,
-        scale: Vec3::ONE,
-        ..Node::default()
-    };
-    let upright = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
-    let eye = Node { camera: Some(0), translation: Vec3::Z * 1.5, scale: Vec3::ONE, ..Node::default() };
-    let scene = Scene {
-        meshes: vec![square(0, tilt, 2000.0), square(0, Quat::IDENTITY, 1.2), square(1, Quat::IDENTITY, 6.0)],
-        materials: vec![matte, lamp],
-        nodes: vec![
-            place(0, tilt * (Vec3::NEG_Y * 1.1), Quat::IDENTITY),
-            place(1, Vec3::ZERO, upright),
-            place(2, Vec3::Y * 30.0, Quat::from_rotation_x(std::f32::consts::PI)),
-            eye,
-        ],
-        cameras: vec![Lens { name: "main".into(), vertical_fov: 0.6, aspect: None, near: 1e-3 }],
-        ..Scene::default()
-    };
-    Arc::new(scene.finish().expect("a scene written by hand is valid"))
+    let mut ground = Shape::new("ground");
+    ground.quad(grey, tilt * Vec3::new(-1000.0, -1.1, 1000.0), tilt * (Vec3::X * 2000.0), tilt * (Vec3::NEG_Z * 2000.0));
+    stage.add(ground);
+    let mut board = Shape::new("board");
+    board.quad(grey, Vec3::new(-0.6, -0.6, 0.0), Vec3::X * 1.2, Vec3::Y * 1.2);
+    stage.add(board);
+    let mut above = Shape::new("lamp");
+    above.quad(lamp, Vec3::new(-3.0, 30.0, -3.0), Vec3::X * 6.0, Vec3::Z * 6.0);
+    stage.add(above);
+    stage.camera("main", [0.0, 0.0, 1.5], [0.0; 3], 35.0);
+    Arc::new(stage.into_scene().finish().expect("a scene made by hand is valid"))
 }
 
 #[test]
 fn what_is_drawn_is_seen() {
     let Some(context) = context() else { return };
     let wide = board_over_wide_ground();
-    for scene in [&wide, &aquifer_tests::scene("cornell")] {
+    for scene in [&wide, &scene("cornell")] {
         for domain in ["gi", "gi_path"] {
             let graph = format!(
                 "transport = 'indirect:2'\noutput = 'drawn.counts'\nslots = {{ domain = '{domain}' }}
