@@ -24,7 +24,8 @@
 # Counted: a case wants some 700 to 40,000 samples a pixel, of 3 to 11 rays: at 64x36 and 10⁶ rays/s, seconds to ten minutes; at 256x144, 16 times.
 # restir_di, restir_gi: unbiased reuse against the path tracer, still and moving, by every unbiased rule, until each row is resolved or the time is
 # over; +SEEDS asks for at least so many, also of rows that passed with fewer. A row wants some 10⁸ to 10⁹ rays. References and seeds so far are kept
-# beside the tables, so that another machine goes on where one stopped: who changes what these graphs do deletes them, and the rows.
+# beside the tables, with a hash of the shaders, so that another machine goes on where one stopped, and no seeds of other code count as theirs. Rows that
+# are settled stay, of whichever commit: who changes what their graphs do deletes them.
 # equal_time: a frame of resampling against path tracing in the same time, with the machine to itself; pages are in out/evidence/equal_time.
 # restir_di_cost, restir_gi_cost: time, rays and bytes of every pass, over light counts and over bounces, with the machine to itself.
 # indirect_figures: two figures of the paper of ReSTIR GI as numbers: where initial directions come from, what the second bounce brings.

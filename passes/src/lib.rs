@@ -18,6 +18,7 @@ pub const LIMITS: &str = "scene/limits";
 /// The built-in shaders.
 pub fn library() -> Library {
     let mut library = Library::new();
+    library.know_facts(Features::NAMES);
     for (path, text) in aquifer_shaders::modules() {
         let origin = format!("built-in:{path}.wgsl");
         library.insert(path, text, origin);
@@ -45,4 +46,19 @@ pub fn registry_keeping(mut library: Library, scene: &Scene, features: &Features
     library.insert(LIMITS, format!("const STACK: u32 = {stack}u;\n"), "the scene's limits");
     let facts = Features::of(scene).names().into_iter().map(str::to_owned).collect();
     Ok(Registry::new(Arc::new(library), KINDS, facts).keeping(features))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn facts_that_no_scene_has_are_refused() {
+        let mut library = library();
+        let text = "//! @needs glosy\n@group(1) @binding(0) var<storage, read_write> image: array<f32>;\n\
+                    @compute @workgroup_size(8, 8) fn main() { image[0] = 1.0; }\n";
+        library.insert("pass/mine", text, "mine.wgsl");
+        let refused = registry(library, None).unwrap().known("mine", &Default::default()).unwrap_err().to_string();
+        assert!(refused.starts_with("mine.wgsl:1:12: there is no fact `glosy` of scenes; did you mean `glossy`?"), "{refused}");
+    }
 }

@@ -8,6 +8,7 @@
 //! proposal is taken for and p_b that of the BSDF, the balance heuristic gives a candidate the MIS weight p_b / (n_l q + n_b p_b) if a BSDF ray met it, and
 //! q / (n_l q + n_b p_b) if it was proposed; n times that times its contribution weight (1 / p_b; the proposal's W) is n / (n_l q + n_b p_b), and
 //! n q W / (n_l q + n_b p_b): unbiased for any q > 0, also where the proposal's own density is not known. A light that no ray can meet has p_b = 0.
+//! @paths 1
 //! @default
 
 import package::base::rng::{Rng, rng_bits, rng_next4};
@@ -67,8 +68,11 @@ fn meet(at: Surface, rays: u32, count: u32, u: vec3<f32>) -> Drawn {
 
 /// n_l q + n_b p_b, by uv.
 fn mixed_density(s: Sample, at: Surface, rays: u32, count: u32, q: f32) -> f32 {
-    let arrival = arrive(light_point(s.light, vec2<f32>(s.u, s.v), at.when), at.position);
-    return f32(count - rays) * q + f32(rays) * scatter_pdf(at, arrival.direction) * arrival.jacobian;
+    let p = light_point(s.light, vec2<f32>(s.u, s.v), at.when);
+    let arrival = arrive(p, at.position);
+    var met = scatter_pdf(at, arrival.direction) * arrival.jacobian;
+    @if(alpha) { met *= p.opacity; }
+    return f32(count - rays) * q + f32(rays) * met;
 }
 
 /// f · L_e · cos · dω/duv, without visibility.

@@ -4,6 +4,7 @@
 //! The measure is the solid angle of x_s at the pixel's surface; a sample moves between pixels by reconnection to x_s. The radiance is an estimate by
 //! path tracing, kept as it is: for other pixels too, as if x_s looked the same from all sides. Paths count from two scatterings on: what x_s emits
 //! itself is direct light.
+//! @paths 2..
 //! bias (glossy) [domain = gi_path]: the radiance that left a glossy point one way is taken for that of all ways
 //! bias (normal_maps) [domain = gi_path]: the radiance that left a point by a normal turned to one viewer is taken for that of all viewers
 //! bias (moving_objects): radiance found in earlier frames is kept, though what it came from has moved since

@@ -7,6 +7,7 @@
 //! MIS weights enter the contribution weight alone, so that L given (x_s, ω₃) means the same at every pixel: a share of it kept in L would depend on
 //! the pixel that drew it. ω₃ is kept to 16 bits a coordinate, some 4·10⁻⁵ rad, which is less than a lobe is wide unless its roughness is below some
 //! 0.01.
+//! @paths 2..
 //! bias (moving_objects): light found in earlier frames is kept, though what it came from has moved since
 //! bias (moving_lights): light found in earlier frames is kept, though lights have moved since
 //! bias (visibility = at_shading) [visibility = in_target]: samples exist only where the pixel that drew them sees them, which no MIS weight knows

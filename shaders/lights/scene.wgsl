@@ -12,6 +12,7 @@ import package::frame::frame::{NOW, frame};
 import package::scene::geometry::{NONE};
 @if(emissive_meshes) import package::scene::geometry::{info_of, instance_at, is_solid, point_to_world, triangle_at};
 @if(emissive_meshes) import package::scene::material::{emission_at};
+@if(emissive_meshes && alpha) import package::scene::material::{opacity_at};
 @if(emissive_meshes && double_sided) import package::scene::material::{DOUBLE_SIDED, stored_material};
 import package::scene::ray::{Hit, Ray, RELATIVE_ERROR};
 @if(environment) import package::scene::environment::{environment_direction, environment_jacobian, environment_radiance, environment_uv};
@@ -48,6 +49,8 @@ struct LightPoint {
     delta: bool,
     /// Radiance of triangle or environment, intensity of point and spot, irradiance of a directional light.
     emission: vec3<f32>,
+    /// Share of the rays towards it that end there: the others go through a hole, where nothing shines. It is in `emission`.
+    @if(alpha) opacity: f32,
     double_sided: bool,
     size: f32,
     light: u32,
@@ -74,6 +77,7 @@ fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
     var p: LightPoint;
     p.light = id;
     p.when = when;
+    @if(alpha) { p.opacity = 1.0; }
     @if(punctual_lights) {
         if (light.kind == PUNCTUAL) {
             let l = punctual_at(light.index, when);
@@ -111,6 +115,10 @@ fn light_point(id: u32, uv: vec2<f32>, when: u32) -> LightPoint {
     // One that was squashed is in no hierarchy and shines nowhere, but may still be remembered.
     p.area = select(0.0, 0.5 * length(n), is_solid(instance));
     p.emission = emission_at(material, light.triangle, barycentrics);
+    @if(alpha) {
+        p.opacity = opacity_at(material, light.triangle, barycentrics);
+        p.emission *= p.opacity;
+    }
     @if(double_sided) { p.double_sided = (stored_material(material).flags & DOUBLE_SIDED) != 0u; }
     p.size = max(max3(abs(a)), max(max3(abs(b)), max3(abs(c))));
     p.light = id;

@@ -3,6 +3,7 @@
 //! Unbiased. Lights are drawn by slot `proposal`, power-proportional by default; BSDF sampling and light sampling are joined by the power
 //! heuristic (Veach 1997, ch. 9). The g-buffer's surface is the first vertex, so that the pass measures the same pixels as every
 //! resampling pass. Which lengths of paths count is the graph's `transport`.
+//! @paths 0..
 
 import package::frame::frame::{NOW, frame, index_of, inside};
 import package::frame::random::{rng_for};

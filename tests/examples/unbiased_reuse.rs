@@ -258,7 +258,7 @@ fn enough(verdict: Verdict, fewest: u64) -> u64 {
     by_itself.max(fewest.min(MOST_SEEDS))
 }
 
-/// What seeds have shown so far, kept in a file, and of which graph and settings: of others it would be something else.
+/// What seeds have shown so far, kept in a file, and of which graph, settings and shaders: of others it would be something else.
 struct Shown {
     path: PathBuf,
     of: Value,
@@ -321,7 +321,11 @@ impl Measuring<'_> {
         let settings: Vec<&str> = self.subject.settings.iter().chain(lit.settings).chain(further).copied().collect();
         let parts = Parts { settings: &settings, keep: &["shade.color"], view: moving.clone(), ..Parts::new(&scene, &graph) };
         let mut renderer = parts.renderer(self.context);
-        let mut shown = Shown::open(self.folder.join(format!("{name}-{mis}.json")), json!({ "graph": graph, "settings": settings }));
+        let shaders = parts.shader_digest();
+        let mut shown = Shown::open(
+            self.folder.join(format!("{name}-{mis}.json")),
+            json!({ "graph": graph, "settings": settings, "shaders": shaders }),
+        );
         let most = goal.min(shown.moments.count() + PART);
         while shown.moments.count() < most && Instant::now() < self.end && !settled(&shown.moments, &reference) {
             let from = shown.moments.count();
@@ -343,6 +347,7 @@ impl Measuring<'_> {
             row["frame"] = json!(FRAME);
             row["slots"] = json!(format!("{}{}", lit.slots, lit.ours).trim());
             row["settings"] = json!(settings);
+            row["shaders"] = json!(shaders);
             evidence.put(key, row);
         }
         if settled(moments, &reference) {

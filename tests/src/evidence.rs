@@ -68,9 +68,14 @@ pub fn told(found: &BlockComparison) -> Value {
     let plane = &found.planes[0];
     let percent = |share: f64| (share * 1e5).round() / 1e3;
     let largest = plane.resolved.iter().map(|block| block.difference.value.abs()).reduce(f64::max);
+    let other = plane.unresolved.first().map(|block| {
+        let [x, y] = block.corner;
+        json!({ "at": [x, y], "difference %": percent(block.difference.value), "standard error %": percent(block.difference.standard_error) })
+    });
     json!({
         "mean difference %": percent(plane.overall.value), "standard error %": percent(plane.overall.standard_error),
         "lit blocks": plane.lit, "resolved blocks": plane.resolved.len(), "largest block difference %": largest.map(percent),
+        "furthest unresolved block": other,
         "verdict": found.verdict.to_string(),
     })
 }

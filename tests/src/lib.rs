@@ -9,9 +9,9 @@ pub mod references;
 pub mod seeds;
 pub mod vanishing;
 
-use aquifer_graph::{Document, Graph, Needs, NeedsAll, Shelf, Source};
+use aquifer_graph::{Document, Graph, Needs, NeedsAll, Plan, Shelf, Source};
 use aquifer_lab::{capture::Capture, film::Film};
-use aquifer_render::{Context, ContextOptions, Renderer, RendererOptions, SceneGlobals, View};
+use aquifer_render::{Context, ContextOptions, Registry, Renderer, RendererOptions, SceneGlobals, View};
 use aquifer_scene::{Features, Scene};
 use std::sync::{Arc, OnceLock};
 
@@ -110,7 +110,16 @@ impl<'a> Parts<'a> {
         Rolling { renderer, capture }
     }
 
-    fn build(&self, context: &Context) -> (Renderer, Capture) {
+    /// Hash of the shaders, linked for the scene: the version of the code that decides the picture.
+    ///
+    /// # Panics
+    /// When anything is wrong.
+    pub fn shader_digest(&self) -> String {
+        let (registry, plan, _) = self.plan();
+        aquifer_lab::compare::reference::shaders(&registry, &plan)
+    }
+
+    fn plan(&self) -> (Registry, Plan, Capture) {
         let mut library = aquifer_passes::library();
         for (path, text) in self.shaders {
             library.insert(*path, *text, format!("test:{path}.wgsl"));
@@ -126,6 +135,12 @@ impl<'a> Parts<'a> {
         let keep: Vec<&str> = self.keep.iter().copied().chain(capture.keep()).collect();
         let needs: &dyn Needs = if self.kept == Kept::Needed { &registry } else { &NeedsAll };
         let plan = graph.plan(needs, &keep).expect("a checked graph has a plan");
+        (registry, plan, capture)
+    }
+
+    fn build(&self, context: &Context) -> (Renderer, Capture) {
+        let (registry, plan, capture) = self.plan();
+        let facts = Features::of(self.scene);
         let arrays = if self.kept == Kept::Needed { facts } else { Features::ALL };
         let globals =
             SceneGlobals::keeping(context, self.scene.clone(), self.view.clone(), &arrays).unwrap_or_else(|error| panic!("{error}"));

@@ -45,6 +45,9 @@ pub enum Cause {
     /// The transport's text.
     #[error("{0}")]
     BadTransport(crate::TransportError),
+    /// Passes bring other light paths into the picture than the transport says.
+    #[error("transport `{transport}` is {wanted}, and the passes make {made}")]
+    OtherPaths { transport: String, wanted: String, made: String },
     /// A pass that is not in the graph.
     #[error("there is no pass `{pass}`")]
     UnknownPass { pass: String },
@@ -155,6 +158,7 @@ impl Cause {
             Cause::BadEdit { .. } => "bad-edit",
             Cause::RemovedAndSet { .. } => "removed-and-set",
             Cause::BadTransport(_) => "bad-transport",
+            Cause::OtherPaths { .. } => "other-paths",
             Cause::UnknownPass { .. } => "unknown-pass",
             Cause::UnknownKind { .. } => "unknown-kind",
             Cause::Shader { .. } => "shader",

@@ -2,6 +2,7 @@
 
 mod order;
 mod passes;
+mod paths;
 mod values;
 mod wires;
 
@@ -60,7 +61,7 @@ impl Checker<'_> {
         let knob = self.knob(&passes);
         let document = self.document;
         let text = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.value.clone());
-        Some(Graph {
+        let graph = Graph {
             sources: document.sources.clone(),
             title: text(&document.title).or_else(|| document.sources.iter().next().map(|first| first.name.clone())).unwrap_or_default(),
             about: text(&document.about).unwrap_or_default(),
@@ -68,7 +69,9 @@ impl Checker<'_> {
             nodes,
             output: output?.value,
             knob,
-        })
+        };
+        self.paths(&graph);
+        Some(graph)
     }
 
     fn transport(&mut self) -> Option<Transport> {

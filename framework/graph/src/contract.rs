@@ -23,6 +23,29 @@ pub struct Contract {
     pub needs: Vec<String>,
     /// Ports that the pass has only in other scenes, each with what this one lacks.
     pub absent: BTreeMap<String, String>,
+    /// The light paths that the pass brings into the picture; `None` where it brings none.
+    pub paths: Option<Paths>,
+}
+
+/// Light paths, counted in scatterings between camera and emitter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Paths {
+    /// Fewest scatterings.
+    pub fewest: u32,
+    /// Most; `None`: the pass takes fewest and most from the graph's transport too.
+    pub most: Option<u32>,
+}
+
+impl std::str::FromStr for Paths {
+    type Err = std::num::ParseIntError;
+
+    /// `1`: that many; `2..`: from there on, within the graph's transport.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text.trim().strip_suffix("..") {
+            Some(fewest) => Ok(Paths { fewest: fewest.parse()?, most: None }),
+            None => text.trim().parse().map(|count| Paths { fewest: count, most: Some(count) }),
+        }
+    }
 }
 
 /// A place for a wire.

@@ -201,6 +201,8 @@ impl Executor {
         }
         for index in rounds {
             self.nodes[index].work.set(name, value).map_err(|source| Error::Pass { pass: pass.to_owned(), source })?;
+            // Whoever builds the plan anew, at another size, finds the value.
+            self.plan.steps[index].params.insert(name.to_owned(), value);
         }
         Ok(())
     }

@@ -3,14 +3,11 @@
 use crate::{KernelPass, Pass, PassError, PassKind, contract::contract};
 use aquifer_graph::{Contract, ContractError, Contracts, Needs, Node, Slots, Step, Verdict};
 use aquifer_scene::Features;
-use aquifer_shader::{Composed, Cut, Library, Piece, ShaderError, Specialisation};
+use aquifer_shader::{Composed, Cut, Library, PASSES, Piece, ShaderError, Specialisation};
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
     sync::{Arc, Mutex, PoisonError},
 };
-
-/// The folder of the library whose files are kinds by themselves.
-const FOLDER: &str = "pass";
 
 /// Kinds of passes: an explicit list, then every file of the library's folder `pass`. Shaders are composed once for each filling of slots.
 ///
@@ -61,7 +58,7 @@ impl Registry {
         if let Some(kind) = self.kinds.iter().find(|kind| kind.name == name) {
             return Ok(Kind { shader: kind.shader.to_owned(), about: kind.about, build: kind.build });
         }
-        let shader = format!("{FOLDER}/{name}");
+        let shader = format!("{PASSES}/{name}");
         match self.library.text(&shader) {
             Some(_) => Ok(Kind { shader, about: "", build: KernelPass::build }),
             None => Err(ContractError::UnknownKind { kind: name.to_owned(), known: self.kinds() }),
@@ -84,8 +81,10 @@ impl Registry {
         }
         let composed = self.library.compose(&what).map_err(|error| self.refused(name, error))?;
         let read = |composed: &Composed| {
-            let refused = |message| ContractError::Shader(format!("{}.wgsl: {message}", kind.shader));
-            contract(&composed.interface, &self.facts).map_err(refused)
+            contract(&composed.interface, &self.facts).map_err(|wrong| {
+                let module = wrong.module.as_deref().unwrap_or(&kind.shader);
+                self.refused(name, self.library.fault(module, &wrong.name, wrong.tag.as_deref(), wrong.message))
+            })
         };
         let mut contract = read(&composed)?;
         if composed.cuts.iter().any(is_port) {
@@ -177,7 +176,7 @@ pub(crate) struct Kind {
 impl Contracts for Registry {
     fn kinds(&self) -> Vec<String> {
         let listed = self.kinds.iter().map(|kind| kind.name.to_owned());
-        let all: BTreeSet<String> = listed.chain(self.library.modules(FOLDER)).collect();
+        let all: BTreeSet<String> = listed.chain(self.library.modules(PASSES)).collect();
         all.into_iter().collect()
     }
 
@@ -187,5 +186,32 @@ impl Contracts for Registry {
 
     fn contract(&self, kind: &str, slots: &Slots) -> Result<Contract, ContractError> {
         Ok(self.known(kind, slots)?.contract.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_contradicts_itself_is_told_with_its_line() {
+        let refused = |tag: &str| {
+            let text = format!(
+                "struct Params {{\n    /// Width.\n    /// {tag}\n    /// @range 0 8\n    width: f32,\n}}\n\
+                 @group(1) @binding(0) var<uniform> params: Params;\n/// @extent rows\n\
+                 @group(1) @binding(1) var<storage, read_write> image: array<f32>;\n\
+                 @compute @workgroup_size(8, 8) fn main() {{ image[0] = params.width; }}\n"
+            );
+            let mut library = Library::new();
+            library.insert("pass/x", text, "mine/pass/x.wgsl");
+            Registry::new(Arc::new(library), &[], BTreeSet::new()).known("x", &Slots::new()).unwrap_err().to_string()
+        };
+        let outside = refused("@default 99");
+        assert!(outside.starts_with("mine/pass/x.wgsl:3:5: parameter `width` begins as 99"), "{outside}");
+        assert!(outside.ends_with("\n  |     /// @default 99\n  |     ^"), "{outside}");
+        let misspelt = refused("@defalt 1");
+        assert!(misspelt.starts_with("mine/pass/x.wgsl:3:5: a parameter has no tag `@defalt`"), "{misspelt}");
+        let extent = refused("@default 1");
+        assert!(extent.starts_with("mine/pass/x.wgsl:8:1: `@extent rows`"), "{extent}");
     }
 }

@@ -47,6 +47,8 @@ pub struct SceneGlobals {
     moving: Moving,
     batches: Vec<Batch>,
     last: Option<State>,
+    /// What passes find as the frame before is `last` itself.
+    before_is_last: bool,
     context: Context,
     /// `None` inside where it could not be made, which was told.
     wide: OnceLock<Option<Wide>>,
@@ -70,7 +72,7 @@ impl SceneGlobals {
     pub fn keeping(context: &Context, scene: Arc<Scene>, view: View, features: &Features) -> Result<SceneGlobals, Error> {
         let still = Still::upload(context, &scene, features)?;
         let first = State::of(&scene, &still, &view, 0).map_err(refused)?;
-        let moving = Moving::new(context, &scene, features, &first)?;
+        let moving = Moving::new(context, &scene, features, &first, upper_levels(&scene, features)?)?;
         Ok(SceneGlobals {
             batches: batches(&scene),
             scene,
@@ -78,6 +80,7 @@ impl SceneGlobals {
             still,
             moving,
             last: None,
+            before_is_last: false,
             context: context.clone(),
             wide: OnceLock::new(),
         })
@@ -85,17 +88,12 @@ impl SceneGlobals {
 
     /// Entries of the traversal stack that a scene needs; the trace shaders take it as `scene/limits::STACK`.
     ///
-    /// The upper level of a moving scene is rebuilt for every frame and may grow deeper: it gets room for 16 more levels.
-    ///
     /// # Errors
     /// [`Error::Globals`] for a scene that was not finished.
     pub fn stack_depth(scene: &Scene, features: &Features) -> Result<u32, Error> {
-        let moment = scene.at(0.0, None).map_err(refused)?;
-        let upper = aquifer_scene::Tlas::build(scene, &moment).bvh.depth;
         let lower = scene.meshes.iter().map(|mesh| mesh.bvh.depth).max().unwrap_or(0);
-        let slack = if features.moving_objects { 16 } else { 0 };
         // A multiple of 8, so that similar scenes share pipelines.
-        Ok((upper + lower + slack).next_multiple_of(8))
+        Ok((upper_levels(scene, features)? + lower).next_multiple_of(8))
     }
 
     fn wide(&self) -> Option<&Wide> {
@@ -141,6 +139,14 @@ fn batches(scene: &Scene) -> Vec<Batch> {
     meshes.chunk_by(|a, b| a == b).map(batch).collect()
 }
 
+/// Levels of the upper hierarchy that there is room for. That of a moving scene is rebuilt for every frame and may grow by 16 from what it is
+/// at second 0, whatever moment comes first.
+fn upper_levels(scene: &Scene, features: &Features) -> Result<u32, Error> {
+    let moment = scene.at(0.0, None).map_err(refused)?;
+    let slack = if features.moving_objects { 16 } else { 0 };
+    Ok(aquifer_scene::Tlas::build(scene, &moment).bvh.depth + slack)
+}
+
 fn refused(error: aquifer_scene::SceneError) -> Error {
     Error::Globals(error.to_string())
 }
@@ -149,12 +155,20 @@ impl Globals for SceneGlobals {
     fn advance(&mut self, context: &Context, frame: &FrameInfo) -> Result<(), Error> {
         let time = self.view.time_at(frame.index);
         let state = match self.last.take() {
-            Some(last) if last.is_at(&self.view, time) => last,
+            Some(last) if last.is_at(&self.view, time) => {
+                // The frame before was of this moment too.
+                if !std::mem::replace(&mut self.before_is_last, true) {
+                    self.moving.write_before(context, &last)?;
+                }
+                last
+            }
             last => {
                 let new = State::of(&self.scene, &self.still, &self.view, frame.index).map_err(refused)?;
                 self.moving.write_now(context, &new)?;
                 // History starts as a copy of now, never as zeros.
-                self.moving.write_before(context, if frame.history_valid { last.as_ref().unwrap_or(&new) } else { &new })?;
+                let last = last.filter(|_| frame.history_valid);
+                self.before_is_last = last.is_none();
+                self.moving.write_before(context, last.as_ref().unwrap_or(&new))?;
                 new
             }
         };

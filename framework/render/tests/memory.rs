@@ -2,7 +2,8 @@
 
 mod common;
 
-use aquifer_render::{Error, RendererOptions};
+use aquifer_graph::Value;
+use aquifer_render::{Error, Renderer, RendererOptions};
 use common::{pixels, plan, registry, render, renderer, small};
 
 const COUNT: &str = "[pass.count]\nin.before = \"count.after@prev\"\n";
@@ -122,6 +123,24 @@ fn only_what_is_kept_can_be_read() {
     let Err(Error::NoResource { name, known }) = renderer.read("a9.after") else { panic!("there is no a9") };
     assert_eq!(name, "a9.after");
     assert!(known.contains(&"a6.after".to_owned()));
+}
+
+#[test]
+fn another_size_keeps_live_parameters() {
+    let registry = registry(&[]);
+    let scale = "[pass.source]\n[pass.scale]\nin.value = \"source.value\"\n";
+    let mut renderer = renderer(&registry, plan(&registry, "scale.image", scale, &[]), small());
+    renderer.set_param("scale", "offset", Value::U32(7)).unwrap();
+    let shown = |renderer: &mut Renderer| {
+        renderer.restart().unwrap();
+        render(renderer, 1);
+        pixels(renderer, "scale.image")[0]
+    };
+    let before = shown(&mut renderer);
+    renderer.resize(&registry, [5, 4]).unwrap();
+    assert_eq!(shown(&mut renderer), before);
+    renderer.set_param("scale", "offset", Value::U32(1)).unwrap();
+    assert_ne!(shown(&mut renderer), before, "the parameter does nothing here");
 }
 
 #[test]

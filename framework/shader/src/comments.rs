@@ -1,5 +1,6 @@
 //! What the comments of a module say: the manual page above it, `///` texts and `@tags` of its declarations, `//! bias:` lines.
 
+use crate::source::without_attributes;
 use std::{collections::HashMap, fmt};
 
 /// Text and tags above one declaration.
@@ -9,6 +10,10 @@ pub struct Doc {
     pub text: String,
     /// `@name value` lines.
     pub tags: Vec<(String, String)>,
+    /// The declaration's line, from 0.
+    pub line: usize,
+    /// The lines of the tags.
+    pub tag_lines: Vec<usize>,
 }
 
 /// `bias (condition) [slot = filling]: why`. The condition is a fact of the scene, or `slot = filling`; in brackets stands what has not this bias.
@@ -24,7 +29,8 @@ pub struct BiasLine {
 }
 
 impl BiasLine {
-    fn read(line: &str) -> Option<Self> {
+    /// Reads what follows `//!`.
+    pub fn read(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("bias")?;
         let (condition, rest) = enclosed(rest, " (", ')').map_or((None, rest), |(text, rest)| (Some(text.to_owned()), rest));
         let (without, rest) = enclosed(rest, " [", ']').map_or((None, rest), |(text, rest)| (Some(text), rest));
@@ -63,6 +69,8 @@ pub struct Comments {
     pub manual: String,
     /// Names of the line `//! @needs …`.
     pub needs: Vec<String>,
+    /// What the line `//! @paths …` says.
+    pub paths: Option<String>,
     /// `//! bias:` lines.
     pub bias: Vec<BiasLine>,
     docs: HashMap<String, Doc>,
@@ -74,15 +82,15 @@ impl Comments {
         let mut found = Comments::default();
         let mut pending = Doc::default();
         let mut structure: Option<String> = None;
-        for line in text.lines().map(str::trim) {
+        for (number, line) in text.lines().map(str::trim).enumerate() {
             if let Some(head) = line.strip_prefix("//!") {
                 found.head(head.strip_prefix(' ').unwrap_or(head));
             } else if let Some(doc) = line.strip_prefix("///") {
-                pending.line(doc.trim());
+                pending.line(doc.trim(), number);
             } else if !line.is_empty() && !line.starts_with("//") {
                 if let Some(name) = declared(line, structure.is_some()) {
                     let key = structure.as_ref().map_or_else(|| name.to_owned(), |outer| format!("{outer}.{name}"));
-                    found.docs.insert(key, std::mem::take(&mut pending));
+                    found.docs.insert(key, Doc { line: number, ..std::mem::take(&mut pending) });
                 }
                 if !line.starts_with('@') || line.contains(';') || line.contains(',') {
                     pending = Doc::default();
@@ -98,11 +106,23 @@ impl Comments {
         self.docs.get(name).cloned().unwrap_or_default()
     }
 
+    /// The line, from 0, of a tag of a declaration, or of the declaration itself.
+    pub fn line_of(&self, name: &str, tag: Option<&str>) -> Option<usize> {
+        let doc = self.docs.get(name)?;
+        let tagged = doc.tags.iter().zip(&doc.tag_lines).find(|((name, _), _)| Some(name.as_str()) == tag);
+        Some(tagged.map_or(doc.line, |(_, line)| *line))
+    }
+
     fn head(&mut self, line: &str) {
         match BiasLine::read(line) {
             Some(bias) => self.bias.push(bias),
-            None if line.starts_with('@') => {
-                self.needs.extend(line.strip_prefix("@needs ").unwrap_or_default().split_whitespace().map(str::to_owned));
+            None if line.trim_start().starts_with('@') => {
+                let mut words = line.split_whitespace();
+                match words.next() {
+                    Some("@needs") => self.needs.extend(words.map(str::to_owned)),
+                    Some("@paths") => self.paths = words.next().map(str::to_owned),
+                    _ => {}
+                }
             }
             None => {
                 self.manual.push_str(line);
@@ -113,11 +133,12 @@ impl Comments {
 }
 
 impl Doc {
-    fn line(&mut self, line: &str) {
+    fn line(&mut self, line: &str, number: usize) {
         match line.strip_prefix('@') {
             Some(tag) => {
                 let (name, value) = tag.split_once(char::is_whitespace).unwrap_or((tag, ""));
                 self.tags.push((name.to_owned(), value.trim().to_owned()));
+                self.tag_lines.push(number);
             }
             None if self.text.is_empty() => self.text = line.to_owned(),
             None => self.text = format!("{} {line}", self.text),
@@ -127,7 +148,7 @@ impl Doc {
 
 /// The name that a line declares: `var<storage> name`, `override name`, or `name:` within a struct.
 fn declared(line: &str, in_structure: bool) -> Option<&str> {
-    let line = strip_attributes(line);
+    let line = without_attributes(line);
     let rest = if in_structure {
         line
     } else if let Some(rest) = line.strip_prefix("override ") {
@@ -142,22 +163,8 @@ fn declared(line: &str, in_structure: bool) -> Option<&str> {
     (end > 0 && rest[end..].trim_start().starts_with(':')).then(|| &rest[..end])
 }
 
-/// Drops leading `@attribute` and `@attribute(arguments)`.
-fn strip_attributes(mut line: &str) -> &str {
-    while let Some(rest) = line.strip_prefix('@') {
-        let name = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
-        let rest = &rest[name..];
-        line = match rest.strip_prefix('(') {
-            Some(arguments) => arguments.split_once(')').map_or("", |(_, after)| after),
-            None => rest,
-        };
-        line = line.trim_start();
-    }
-    line
-}
-
 fn next_structure(line: &str, current: Option<String>) -> Option<String> {
-    let line = strip_attributes(line);
+    let line = without_attributes(line);
     if let Some(rest) = line.strip_prefix("struct ") {
         let name = rest.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next().unwrap_or_default();
         return (!line.contains('}')).then(|| name.to_owned());
@@ -182,9 +189,12 @@ mod tests {
             BiasLine { condition: Some("metals".into()), without: Some(("curve".into(), "agx".into())), why: "they are dull".into() };
         assert_eq!(comments.bias, [always, metals]);
         assert_eq!(comments.of("Params.exposure").tags, [("default".into(), "0".into()), ("range".into(), "-16 16".into())]);
-        assert_eq!(comments.of("Params.plain"), Doc::default());
-        assert_eq!(comments.of("color"), Doc { text: "What comes in.".into(), tags: vec![("optional".into(), String::new())] });
+        assert_eq!(comments.of("Params.plain"), Doc { line: 11, ..Doc::default() });
+        let tags = vec![("optional".into(), String::new())];
+        assert_eq!(comments.of("color"), Doc { text: "What comes in.".into(), tags, line: 16, tag_lines: vec![15] });
         assert_eq!(comments.of("taps").text, "Taps.");
-        assert_eq!(comments.of("params"), Doc::default());
+        assert_eq!(comments.of("params"), Doc { line: 13, ..Doc::default() });
+        assert_eq!(comments.line_of("Params.exposure", Some("range")), Some(9));
+        assert_eq!([comments.line_of("taps", Some("range")), comments.line_of("nobody", None)], [Some(18), None]);
     }
 }

@@ -53,12 +53,25 @@ pub fn of<'a>(module: &'a str, text: &'a str, features: &'a BTreeSet<String>) ->
 /// The condition of a line's `@if`, and what comes after it.
 fn split(line: &str) -> Option<(&str, &str)> {
     let (_, from) = line.split_once("@if(")?;
+    let condition = balanced(from)?;
+    Some((condition, from[condition.len() + 1..].trim_start()))
+}
+
+/// Every condition of a text without comments, with its place.
+pub fn conditions(code: &str) -> impl Iterator<Item = (usize, &str)> {
+    const OPENINGS: [&str; 2] = ["@if(", "@elif("];
+    let openings = OPENINGS.iter().flat_map(|opening| code.match_indices(opening).map(|(at, opening)| at + opening.len()));
+    openings.filter_map(|at| Some((at, balanced(&code[at..])?)))
+}
+
+/// What stands before the `)` that closes a parenthesis.
+fn balanced(text: &str) -> Option<&str> {
     let mut depth = 1;
-    let end = from.find(|c| {
+    let end = text.find(|c| {
         depth += i32::from(c == '(') - i32::from(c == ')');
         depth == 0
     })?;
-    Some((&from[..end], from[end + 1..].trim_start()))
+    Some(&text[..end])
 }
 
 fn piece(rest: &str) -> Piece {

@@ -19,20 +19,14 @@ pub enum ShaderError {
         /// The module that imports it.
         by: String,
     },
-    /// The linker or the parser refuses the text.
-    #[error("{message}")]
-    Link {
-        /// With module, line and caret.
-        message: String,
-    },
-    /// naga refuses the linked text.
-    #[error("{place}: {message}\n{excerpt}")]
+    /// A text that is no shader: the linker, naga or the host refuses it.
+    #[error("{place}: {message}{excerpt}")]
     Invalid {
-        /// `pass/temporal.wgsl:12:5 in combine`, as near as can be told.
+        /// `pass/temporal.wgsl:12:5 in combine`, or the file alone.
         place: String,
-        /// What naga says.
+        /// What is wrong, and the cure where there is one.
         message: String,
-        /// The line, with a caret.
+        /// The line, with a caret, each on a line of its own; empty without a line.
         excerpt: String,
     },
     /// Two modules declare an `override` of the same name, which a graph file could not tell apart.
@@ -45,22 +39,20 @@ pub enum ShaderError {
         /// The other.
         second: String,
     },
-    /// Something that the host cannot bind.
-    #[error("{module}.wgsl: binding `{name}`: {why}")]
-    Unbindable {
-        /// The module.
-        module: String,
-        /// The variable.
-        name: String,
-        /// What is wrong and what would do.
-        why: String,
-    },
     /// A file or folder cannot be read.
     #[error("{path}: {why}")]
     Read {
         /// The file.
         path: String,
         /// The system's words.
+        why: String,
+    },
+    /// A folder whose shaders nobody would look for.
+    #[error("{folder}: {why}")]
+    NoShaders {
+        /// The folder.
+        folder: String,
+        /// What is wrong and what would do.
         why: String,
     },
 }

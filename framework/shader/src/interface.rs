@@ -15,6 +15,8 @@ pub struct Interface {
     pub slots: Vec<(String, String)>,
     /// `//! @needs` of the entry file: facts of which a scene must have one for the shader to make anything.
     pub needs: Vec<String>,
+    /// `//! @paths` of every module reached: which light paths it brings into the picture, by scatterings.
+    pub paths: Vec<String>,
     /// `//! bias:` lines of every module reached, less those of slots filled otherwise.
     pub bias: Vec<BiasNote>,
 }

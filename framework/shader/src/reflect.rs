@@ -5,10 +5,30 @@ use crate::{
     Stage,
     comments::{BiasLine, Comments},
     compose::unmangle,
-    slots,
+    locate, slots,
 };
 use naga::{AddressSpace, Handle, ScalarKind, StorageAccess, TypeInner, common::wgsl::TypeContext, proc::Layouter, valid::GlobalUse};
 use std::collections::BTreeMap;
+
+/// Refuses groups that no host fills, and two variables of one module with the same numbers.
+pub fn check_bindings(library: &Library, entry: &str, module: &naga::Module) -> Result<(), ShaderError> {
+    let mut taken = BTreeMap::new();
+    for (_, variable) in module.global_variables.iter() {
+        let Some(naga::ResourceBinding { group, binding }) = variable.binding else { continue };
+        let linked = variable.name.as_deref().unwrap_or_default();
+        let (path, name) = unmangle(linked).unwrap_or_else(|| (entry.to_owned(), linked.to_owned()));
+        if group > 1 {
+            let why =
+                format!("nothing fills group {group} of `{name}`: group 0 is the frame's and the scene's, group 1 has ports and `params`");
+            return Err(locate::declaration(library, &path, &name, why));
+        }
+        if let Some(other) = taken.insert((path.clone(), group, binding), name.clone()) {
+            let why = format!("`{name}` has the group and binding of `{other}`: numbers of one file must differ");
+            return Err(locate::declaration(library, &path, &name, why));
+        }
+    }
+    Ok(())
+}
 
 /// Gives the bindings of each group dense numbers in order of declaration.
 pub fn number_bindings(module: &mut naga::Module) {
@@ -31,13 +51,14 @@ pub fn interface(
     modules: &[String],
 ) -> Result<Interface, ShaderError> {
     let mut layouter = Layouter::default();
-    layouter.update(module.to_ctx()).map_err(|error| ShaderError::Link { message: error.to_string() })?;
+    layouter.update(module.to_ctx()).map_err(|error| locate::file(library, &what.entry, error.to_string()))?;
     let comments: BTreeMap<&str, Comments> =
         modules.iter().filter_map(|path| Some((path.as_str(), Comments::read(library.text(path)?)))).collect();
-    let reader = Reader { what, module, layouter, comments };
+    let reader = Reader { library, what, module, layouter, comments };
     let (bindings, handles) = reader.bindings(info)?;
     Ok(Interface {
         needs: reader.comments.get(what.entry.as_str()).map(|comments| comments.needs.clone()).unwrap_or_default(),
+        paths: reader.comments.values().filter_map(|comments| comments.paths.clone()).collect(),
         manual: reader.comments.get(what.entry.as_str()).map(|comments| comments.manual.clone()).unwrap_or_default(),
         entries: reader.entries(info, &handles),
         bindings,
@@ -55,6 +76,7 @@ fn reached_slots(library: &Library, what: &Specialisation, modules: &[String]) -
 }
 
 struct Reader<'a> {
+    library: &'a Library,
     what: &'a Specialisation,
     module: &'a naga::Module,
     layouter: Layouter,
@@ -81,8 +103,8 @@ impl Reader<'_> {
             }
             let (module, name) = self.origin(variable.name.as_deref().unwrap_or_default());
             let doc = self.doc(&module, &name);
-            let resource =
-                self.resource(variable).map_err(|why| ShaderError::Unbindable { module: module.clone(), name: name.clone(), why })?;
+            let unbindable = |why| locate::declaration(self.library, &module, &name, format!("binding `{name}`: {why}"));
+            let resource = self.resource(variable).map_err(unbindable)?;
             let binding = Binding {
                 group: place.group,
                 binding: place.binding,

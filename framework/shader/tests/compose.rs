@@ -102,12 +102,12 @@ fn faults_point_at_sources() {
     let mut wrong_type = all();
     wrong_type.insert("domain/di", "struct Sample { light: u32, uv: vec2<f32> }\n\nfn draw() -> Sample {\n    let x = 1u + vec3<f32>(0.0);\n    return Sample(1u, vec2<f32>(0.5));\n}\n", "mine/di.wgsl");
     let fault = wrong_type.compose(&of("pass/initial", &[("domain", "di")], &[])).unwrap_err().to_string();
-    assert!(fault.starts_with("mine/di.wgsl:4 in draw: "), "{fault}");
+    assert!(fault.starts_with("mine/di.wgsl:4:13 in draw: "), "{fault}");
 
     let mut broken = all();
     broken.insert("domain/di", "struct Sample { light: u32 }\nfn draw( -> Sample {}\n", "mine/di.wgsl");
     let fault = broken.compose(&of("pass/initial", &[("domain", "di")], &[])).unwrap_err().to_string();
-    assert!(fault.contains("mine/di.wgsl:2"), "{fault}");
+    assert!(fault.starts_with("mine/di.wgsl:2:10: unexpected token `->`"), "{fault}");
 
     let mut twice = all();
     twice.insert("domain/di", format!("override candidates: u32 = 1u;\n{}", DI.replace("1u, v", "candidates, v")), "domain/di.wgsl");

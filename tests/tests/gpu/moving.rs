@@ -81,3 +81,25 @@ fn motion_leads_to_where_things_were() {
     }
     assert!(surfaces > 2000 && moved > 500, "{surfaces} surfaces, {moved} of them move: too few to tell anything");
 }
+
+#[test]
+fn what_has_stopped_stands_still() {
+    let Some(context) = context() else { return };
+    let view = View { time: 0.3, step: STEP, centred: true, ..View::default() };
+    let scene = scene("animated");
+    let graph = "extends = 'gbuffer_view.toml'";
+    let parts = Parts { view: view.clone(), keep: &["gbuffer_traced.motion"], ..Parts::new(&scene, graph) };
+    let mut renderer = parts.renderer(&context);
+    let furthest = |renderer: &mut aquifer_render::Renderer| {
+        renderer.frame().unwrap();
+        renderer.read_f32("gbuffer_traced.motion").unwrap().into_iter().fold(0.0, |most: f32, it| most.max(it.abs()))
+    };
+    furthest(&mut renderer);
+    assert!(furthest(&mut renderer) > 1.0, "nothing moves");
+    // Playing stops at the moment that was shown last.
+    renderer.set_time(view.time_at(1), 0.0);
+    for frame in 0..3 {
+        let moved = furthest(&mut renderer);
+        assert!(moved < 0.01, "{moved} px in frame {frame} of a moment that stays");
+    }
+}

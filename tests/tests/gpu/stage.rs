@@ -1,6 +1,6 @@
 //! Scenes of a few polygons, written in the test that needs them.
 
-use aquifer_scene::{Environment, Lens, Material, Mesh, Node, Scene};
+use aquifer_scene::{Environment, Lens, Material, Mesh, Node, PunctualLight, Scene};
 use glam::{Mat3, Quat, Vec3, Vec4};
 use std::sync::Arc;
 
@@ -56,6 +56,13 @@ impl Stage {
         let rotation = Quat::from_mat3(&Mat3::from_cols(x, z.cross(x), z));
         self.0.cameras.push(Lens { name: "main".into(), vertical_fov: full_fov, aspect: None, near: 1e-3 });
         self.0.nodes.push(Node { translation: from, rotation, camera: Some(0), scale: Vec3::ONE, ..Node::default() });
+    }
+
+    /// A punctual light that shines along `along`.
+    pub fn punctual(&mut self, light: PunctualLight, from: Vec3, along: Vec3) {
+        self.0.lights.push(light);
+        let rotation = Quat::from_rotation_arc(Vec3::NEG_Z, along.normalize());
+        self.0.nodes.push(Node { translation: from, rotation, light: Some(self.0.lights.len() as u32 - 1), ..Node::default() });
     }
 
     /// The same radiance from everywhere.

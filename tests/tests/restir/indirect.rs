@@ -1,6 +1,9 @@
 //! Indirect light by ReSTIR against Mitsuba, and bugs and biases that must show there.
 
-use crate::toy::{module, replaced};
+use crate::{
+    direct::coarse,
+    toy::{module, replaced},
+};
 use aquifer_lab::stats::{
     BlockTest, Blocks, Rule, Verdict,
     blocks::{BlockComparison, Quantity},
@@ -34,6 +37,7 @@ struct Case<'a> {
     shaders: &'a [(&'a str, &'a str)],
     frame: u32,
     seeds: u64,
+    test: BlockTest,
 }
 
 impl Case<'_> {
@@ -45,15 +49,32 @@ impl Case<'_> {
         let scene = scene(self.scene);
         let Case { settings, shaders, frame, seeds, .. } = *self;
         let trial = Trial { scene: &scene, graph: &graph, settings, shaders, view: View::default(), frame, seeds };
-        Some(trial.compare(&context, &reference, &test()))
+        Some(trial.compare(&context, &reference, &self.test))
     }
 }
 
 #[test]
 fn unbiased_reuse_agrees_with_path_tracing() {
-    let case = Case { scene: "cornell", graph: "restir_gi_unbiased", settings: &SMALL, shaders: &[], frame: 2, seeds: 192 };
+    let case = Case { scene: "cornell", graph: "restir_gi_unbiased", settings: &SMALL, shaders: &[], frame: 2, seeds: 192, test: test() };
     let Some(found) = case.compare() else { return };
     assert_eq!(found.verdict, Verdict::Passed, "{found}");
+}
+
+/// The domain that keeps a vertex more, and evaluates surfaces anew at both ends.
+const PATHS: [&str; 5] = ["slots.domain=gi_path", "initial.candidates=8", "spatial.radius=6.0", "spatial.rows=0.0", "spatial.taps=3"];
+
+#[test]
+fn kept_paths_agree_with_path_tracing() {
+    let case = Case { scene: "cornell", graph: SPATIAL, settings: &PATHS, shaders: &[], frame: 0, seeds: 192, test: coarse() };
+    let Some(found) = case.compare() else { return };
+    assert_eq!(found.verdict, Verdict::Passed, "{found}");
+    let swapped = replaced(
+        module("domain/gi_path"),
+        "return Shifted(s, value(s, dst), p_hat(s, dst), j);",
+        "return Shifted(s, value(s, dst), p_hat(s, dst), 1.0 / j);",
+    );
+    let found = Case { shaders: &[("domain/gi_path", &swapped)], ..case }.compare().expect("the adapter is still there");
+    assert_eq!(found.verdict, Verdict::Failed, "the Jacobian inverted does not show: {found}");
 }
 
 #[test]
@@ -68,7 +89,7 @@ fn planted_bugs_of_indirect_light_show() {
     let bugs =
         [("the Jacobian inverted", SPATIAL, 128), ("visibility missing in Z", SPATIAL, 128), ("no 1/p after roulette", INITIAL, 256)];
     for (i, (name, graph, seeds)) in bugs.into_iter().enumerate() {
-        let case = Case { scene: "cornell", graph, settings: &settings[i], shaders: &shaders[i], frame: 0, seeds };
+        let case = Case { scene: "cornell", graph, settings: &settings[i], shaders: &shaders[i], frame: 0, seeds, test: test() };
         let Some(found) = case.compare() else { return };
         assert_eq!(found.verdict, Verdict::Failed, "{name} does not show: {found}");
     }

@@ -1,8 +1,13 @@
 //! What commands are given: graphs, scenes and shaders, by name or by file.
 
+mod content;
+
 use crate::{failure::Failure, ui::Ui, value};
 use aquifer_graph::{Document, Faults, FsFiles, Graph, Layered, Shelf, Source, Transport, nearest};
-use aquifer_lab::{bench::auto, stage};
+use aquifer_lab::{
+    bench::auto,
+    stage::{self, StageError},
+};
 use aquifer_render::{Context, ContextOptions, Registry};
 use aquifer_scene::{Environment, Features, Scene};
 use aquifer_scenes::Generator;
@@ -124,6 +129,17 @@ impl ShaderArgs {
         })
     }
 
+    /// A text that changes whenever a shader does, or what is left out of them.
+    pub fn content(&self) -> Result<String, Failure> {
+        let library = stage::library(&self.folders).map_err(StageError::from)?;
+        let mut hash = blake3::Hasher::new();
+        for path in library.paths() {
+            let text = library.text(path).unwrap_or_default();
+            hash.update(format!("{path} {}\n{text}", text.len()).as_bytes());
+        }
+        Ok(format!("{}, keep all {}", &hash.finalize().to_hex()[..32], self.keep_all))
+    }
+
     /// What shaders for this scene are cut to.
     pub fn features(&self, scene: &Scene) -> Features {
         if self.keep_all { Features::ALL } else { Features::of(scene) }
@@ -140,7 +156,7 @@ impl SceneArgs {
         Ok(scene)
     }
 
-    /// The scene as films name it: a built-in one by its name, a file by its name and the hash of its bytes.
+    /// The scene as films name it: a built-in one by its name, a file by its name and the hash of its bytes and of the files that it names.
     pub fn identity(&self) -> Result<String, Failure> {
         if is_file(&self.scene) { identity(Path::new(&self.scene)) } else { Ok(self.scene.clone()) }
     }
@@ -209,11 +225,11 @@ fn is_file(scene: &str) -> bool {
     extension.eq_ignore_ascii_case("glb") || extension.eq_ignore_ascii_case("gltf")
 }
 
-/// A file's name and the first half of the BLAKE3 hash of its bytes.
+/// A file's name and the first half of the BLAKE3 hash of what it holds.
 fn identity(path: &Path) -> Result<String, Failure> {
-    let bytes = std::fs::read(path).map_err(|error| Failure::new(format!("cannot read `{}`: {error}", path.display())))?;
+    let hash = content::hash(path).map_err(|error| Failure::new(format!("cannot read `{}`: {error}", path.display())))?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    Ok(format!("{name} {}", &blake3::hash(&bytes).to_hex()[..32]))
+    Ok(format!("{name} {}", &hash.to_hex()[..32]))
 }
 
 /// Every text that the graph was read from: its files, then what the command line laid over them.
@@ -222,9 +238,17 @@ pub fn text_of(graph: &Graph) -> String {
     graph.sources().iter().map(part).collect::<Vec<_>>().join("\n")
 }
 
-/// A graph by its name or file, as its texts have it.
+/// A graph by its name or file, as its texts have it. A bare name is the built-in graph's, if there is one, whatever files lie about.
 pub fn load_graph(graph: &str) -> Result<Document, Faults> {
+    if aquifer_graphs::files().iter().any(|(path, _)| path.strip_suffix(".toml") == Some(graph)) {
+        return built_in(graph);
+    }
     Document::load(&file_name(graph), &files())
+}
+
+/// A built-in graph by its name: what references and truths are made with.
+pub fn built_in(graph: &str) -> Result<Document, Faults> {
+    Document::load(&format!("{graph}.toml"), &Shelf::new("built-in", aquifer_graphs::files()))
 }
 
 /// Graph files on disk, over the built-in ones.

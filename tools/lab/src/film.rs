@@ -8,12 +8,13 @@ mod merge;
 mod png;
 
 pub use area::{Area, AreaError, Region};
+pub(crate) use exr::Packing;
 pub use facts::{Facts, GraphText, Overlap, Run, Runs};
 pub use merge::{MergeError, merge};
 pub(crate) use png::{bytes as png_bytes, srgb};
 pub use png::{encode, linear};
 
-use crate::atomic::WriteError;
+use crate::atomic::{self, WriteError};
 use std::path::{Path, PathBuf};
 
 /// A rendered image. Every plane holds one element a pixel, row by row from the top.
@@ -159,15 +160,17 @@ impl Film {
     pub fn write(&self, path: &Path) -> Result<(), FilmError> {
         self.check()?;
         match Format::of(path)? {
-            Format::Exr => exr::write(self, path, exr::Packing::Packed),
+            Format::Exr => Ok(atomic::write(path, &exr::encode(self, path, Packing::Packed)?)?),
             Format::Png => png::write(self, path),
         }
     }
 
-    /// Writes `.exr` without packing it: for films that are noise, which are a third larger then and written at once.
-    pub(crate) fn write_plain(&self, path: &Path) -> Result<(), FilmError> {
+    /// Writes `.exr`, and gives the hash of the file.
+    pub(crate) fn write_hashed(&self, path: &Path, packing: Packing) -> Result<blake3::Hash, FilmError> {
         self.check()?;
-        exr::write(self, path, exr::Packing::Plain)
+        let bytes = exr::encode(self, path, packing)?;
+        atomic::write(path, &bytes)?;
+        Ok(blake3::hash(&bytes))
     }
 
     fn check(&self) -> Result<(), FilmError> {

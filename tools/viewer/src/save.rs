@@ -1,7 +1,11 @@
 //! What the user changed, for keeping: as a graph file that says no more than that, and as a command line.
 
-use crate::{Recipe, session::Picture};
+use crate::{
+    Recipe,
+    session::{Moment, Picture},
+};
 use aquifer_graph::{Graph, Literal, Param, Value};
+use glam::Vec3;
 use std::{collections::BTreeMap, fmt::Write as _, path::Path};
 
 /// The value of a parameter as a setting writes it.
@@ -83,7 +87,7 @@ pub fn render_command(recipe: &Recipe, scene: &str, options: &[String], seed: u6
     words.extend(options.iter().cloned());
     match &picture.moment.name {
         Some(name) => words.extend(["--camera".to_owned(), name.clone()]),
-        None => words.extend(["--look".to_owned(), look(&picture.moment.camera)]),
+        None => words.extend(["--look".to_owned(), look(&picture.moment)]),
     }
     if picture.moment.time != 0.0 {
         words.extend(["--animation-time".to_owned(), picture.moment.time.to_string()]);
@@ -98,11 +102,16 @@ fn settings(recipe: &Recipe) -> impl Iterator<Item = String> {
     recipe.settings.iter().flat_map(|(key, value)| ["--set".to_owned(), format!("{key}={value}")])
 }
 
-/// Where a camera stands and what it looks at, as `--look` takes it.
-fn look(camera: &aquifer_scene::Camera) -> String {
-    let (from, ahead) = (camera.position(), -glam::Vec3::from(camera.to_world.matrix3.z_axis));
-    let at = from + ahead;
-    format!("{},{},{}:{},{},{}", from.x, from.y, from.z, at.x, at.y, at.z)
+/// Where a camera stands and what it looks at, in the scene's own world, as `--look` takes it.
+fn look(Moment { camera, origin, .. }: &Moment) -> String {
+    let (from, ahead) = (camera.position(), -Vec3::from(camera.to_world.matrix3.z_axis));
+    let place = |near: Vec3| {
+        // Floats that were not moved are written as floats: they have fewer digits.
+        let axis =
+            |axis: usize| if origin[axis] == 0.0 { near[axis].to_string() } else { (f64::from(near[axis]) + origin[axis]).to_string() };
+        [0, 1, 2].map(axis).join(",")
+    };
+    format!("{}:{}", place(from), place(from + ahead))
 }
 
 /// A word as a POSIX shell takes it.
@@ -114,6 +123,16 @@ fn shell(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn cameras_are_told_in_the_scenes_own_world() {
+        let to_world = glam::Affine3A::from_translation(Vec3::new(0.1, 2.5, -3.0));
+        let camera = aquifer_scene::Camera { to_world, vertical_fov: 0.7, near: 0.1 };
+        let seen = |origin: DVec3| look(&Moment { camera, origin, name: None, time: 0.0 });
+        assert_eq!(seen(DVec3::ZERO), "0.1,2.5,-3:0.1,2.5,-4");
+        assert_eq!(seen(DVec3::new(0.0, -1024.0, 1e6 * 1024.0)), "0.1,-1021.5,1023999997:0.1,-1021.5,1023999996");
+    }
 
     #[test]
     fn words_survive_the_shell() {

@@ -5,6 +5,7 @@
 //! (`judge`): the pictures go on meanwhile.
 
 mod build;
+mod guard;
 mod judge;
 mod live;
 mod message;
@@ -22,6 +23,7 @@ pub use truth::{About, Truth};
 use crate::{Opening, Recipe};
 use aquifer_graph::{Graph, Plan};
 use aquifer_render::{MemoryReport, PassTime, Startup};
+use guard::guard;
 use message::Inbox;
 use std::{
     collections::BTreeMap,
@@ -102,6 +104,21 @@ pub struct Side {
     pub judged: Option<Arc<Judged>>,
 }
 
+impl Board {
+    /// The reference, where it is of the light paths that a side renders.
+    pub fn truth_of(&self, side: usize) -> Option<&Truth> {
+        let picture = self.sides.get(side)?.picture.as_ref()?;
+        self.truth.as_deref().filter(|truth| truth.about.transport == picture.transport)
+    }
+
+    /// Why a side is not held against the reference that there is.
+    pub fn unjudged(&self, side: usize) -> Option<String> {
+        let (truth, picture) = (self.truth.as_ref()?, self.sides.get(side)?.picture.as_ref()?);
+        let (of, rendered) = (truth.about.transport, picture.transport);
+        (of != rendered).then(|| format!("the reference is of `{of}`, and this graph renders `{rendered}`"))
+    }
+}
+
 /// A graph that renders.
 #[derive(Debug)]
 pub struct Shown {
@@ -145,7 +162,11 @@ impl Session {
         let (messages, inbox) = channel();
         let thread = {
             let (board, messages) = (board.clone(), messages.clone());
-            std::thread::Builder::new().name("session".to_owned()).spawn(move || worker::run(opening, &board, &inbox, &messages))
+            std::thread::Builder::new().name("session".to_owned()).spawn(move || {
+                if let Err(words) = guard(|| worker::run(opening, &board, &inbox, &messages)) {
+                    board.post(|board| (board.trouble, board.waiting) = (Some(words), None));
+                }
+            })
         };
         let thread = thread.map_err(|error| board.post(|board| board.trouble = Some(format!("no thread: {error}")))).ok();
         Self { messages, board, thread }
@@ -167,7 +188,7 @@ impl Drop for Session {
     fn drop(&mut self) {
         self.send(Message::End);
         if let Some(thread) = self.thread.take() {
-            // A panic there was told when it happened.
+            // A panic there was told on the board.
             let _ = thread.join();
         }
     }

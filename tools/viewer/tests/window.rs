@@ -173,6 +173,42 @@ fn the_inspector_shows_the_reservoirs_of_a_pixel_and_what_it_tried() {
 }
 
 #[test]
+fn a_second_side_comes_and_goes_while_a_pixel_is_inspected() {
+    let Some(mut harness) = window(&["light_sampling"]) else { return };
+    until(&mut harness, "it renders", pictures);
+    press(&mut harness, egui::Key::I);
+    let middle = egui::pos2(0.3 * WINDOW[0], 0.55 * WINDOW[1]);
+    harness.drag_at(middle);
+    harness.step();
+    harness.drop_at(middle);
+    until(&mut harness, "the pixel is read", |board| !board.sides[0].records.is_empty());
+    click(&mut harness, "Compare with …");
+    until(&mut harness, "both are read", |board| board.sides.len() == 2 && board.sides.iter().all(|side| !side.records.is_empty()));
+    click(&mut harness, "Close B");
+    until(&mut harness, "B is gone", |board| board.sides.len() == 1);
+}
+
+#[test]
+fn the_window_says_why_a_side_is_not_judged() {
+    let Some(mut harness) = window(&["light_sampling", "gbuffer_view"]) else { return };
+    until(&mut harness, "both render", pictures);
+    click(&mut harness, "Errors");
+    harness.get_by_label("Reference").click();
+    harness.run_steps(2);
+    click(&mut harness, "256 samples a pixel");
+    until(&mut harness, "the reference is asked for", |board| board.truth.is_some() || !board.truth_state.is_empty());
+    // So that it comes sooner.
+    press(&mut harness, egui::Key::H);
+    until(&mut harness, "there is a reference", |board| board.truth.is_some());
+    press(&mut harness, egui::Key::H);
+    until(&mut harness, "A is judged", |board| board.sides[0].judged.is_some());
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("B is not judged: the reference is of `direct`").is_some());
+    assert!(harness.query_by_label_contains("A is not judged").is_none());
+    assert!(harness.query_by_label_contains("times the error of B").is_none());
+}
+
+#[test]
 fn changes_are_saved_as_the_difference_and_nothing_else() {
     let Some(mut harness) = window(&["ris_only"]) else { return };
     until(&mut harness, "it renders", pictures);

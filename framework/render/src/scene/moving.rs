@@ -137,7 +137,7 @@ pub struct Moving {
 const FRAME: &str = "frame/frame::frame";
 
 impl Moving {
-    pub fn new(context: &Context, scene: &Scene, features: &Features, first: &State) -> Result<Moving, Error> {
+    pub fn new(context: &Context, scene: &Scene, features: &Features, first: &State, depth: u32) -> Result<Moving, Error> {
         let names = features.names();
         let (mut stores, mut left_out) = (BTreeMap::new(), Vec::new());
         for Array { now, fact, before, before_fact, table, bytes } in &first.arrays {
@@ -156,11 +156,10 @@ impl Moving {
             }
         }
         let frame = Store::buffer(context, FRAME, &[mirror::Frame::default()], wgpu::BufferUsages::UNIFORM)?;
-        let slack = if features.moving_objects { 16 } else { 0 };
         let facts = Features::of(scene);
         let moves = facts.moving_objects || facts.moving_lights;
         let camera_moves = features.moving_camera;
-        Ok(Moving { stores, left_out, frame, moves, camera_moves, depth: first.depth + slack, camera: None })
+        Ok(Moving { stores, left_out, frame, moves, camera_moves, depth, camera: None })
     }
 
     pub fn store(&self, name: &str) -> Option<&Store> {

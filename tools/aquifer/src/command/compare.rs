@@ -2,22 +2,24 @@
 
 mod entrants;
 mod jobs;
+mod scenes;
 mod words;
 
 use crate::{
     cli::VERSION,
     failure::Failure,
-    source::{AdapterArgs, SceneArgs, ShaderArgs, cache_folder, files, text_of},
+    source::{AdapterArgs, ShaderArgs, built_in, cache_folder, text_of},
     ui::Ui,
     value,
     watch::Watch,
 };
-use aquifer_graph::{Document, Graph, Transport};
+use aquifer_graph::{Graph, Transport};
 use aquifer_lab::{
     atomic,
     bench::auto,
     compare::{
         bench::Entrant,
+        judge,
         report::{GraphFacts, Made, Protocol, Report, SCHEMA},
         scene::{Compared, Request, SceneFacts, compare_scene},
         subject::Stage,
@@ -25,6 +27,7 @@ use aquifer_lab::{
     page,
 };
 use aquifer_render::{Clock, Context};
+use scenes::Place;
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -140,9 +143,10 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     args.refuse_unsuited()?;
     jobs::make_folder(&args)?;
     let entrants = entrants::swept(entrants::entrants(&args.graphs, &args.settings, args.transport)?, &args.sweeps)?;
+    let places = scenes::places(&args.scenes, args.environment.as_ref());
     let report = match args.jobs.is_whole() {
-        true => Some(args.compare(&entrants, &args.scenes, ui)?),
-        false => args.jobs.run(&args, &entrants, ui)?,
+        true => Some(args.compare(&entrants, &places, ui)?),
+        false => args.jobs.run(&args, &entrants, &places, ui)?,
     };
     let Some(report) = report else { return Ok(()) };
     let began = Instant::now();
@@ -161,13 +165,13 @@ fn write_json(path: &Path, report: &Report) -> Result<(), Failure> {
 
 impl Args {
     /// Measures these graphs on these scenes.
-    fn compare(&self, entrants: &[Entrant], scenes: &[String], ui: &Ui) -> Result<Report, Failure> {
+    fn compare(&self, entrants: &[Entrant], places: &[Place], ui: &Ui) -> Result<Report, Failure> {
         let context = self.adapter.open()?;
         let mut watch = Watch::new(ui);
         let mut report = Report { schema: SCHEMA, protocol: self.protocol(), ..Report::default() };
         let mut clock = Clock::Wall;
-        for (index, name) in scenes.iter().enumerate() {
-            let (stage, facts) = self.stage(name, &context, ui)?;
+        for (index, place) in places.iter().enumerate() {
+            let (stage, facts) = self.stage(place, &context, ui)?;
             let entrants = &self.choosing(entrants, &stage)?[..];
             if index == 0 {
                 report.graphs = entrants.iter().map(|entrant| graph_facts(entrant, &stage)).collect::<Result<_, Failure>>()?;
@@ -181,6 +185,7 @@ impl Args {
             report.made.lab_seconds += lab_seconds;
             clock = found;
         }
+        judge::decide(&mut report);
         report.warnings.extend(watch.finish());
         report.made = Made { clock: words::clock(clock).to_owned(), ..made(&context, report.made) };
         Ok(report)
@@ -216,13 +221,13 @@ impl Args {
         }
     }
 
-    fn stage(&self, name: &str, context: &Context, ui: &Ui) -> Result<(Stage, SceneFacts), Failure> {
-        let source = SceneArgs { scene: name.to_owned(), environment: self.environment.clone() };
+    fn stage(&self, place: &Place, context: &Context, ui: &Ui) -> Result<(Stage, SceneFacts), Failure> {
+        let source = &place.source;
         let scene = Arc::new(source.load(ui)?);
         let registry = self.shaders.registry(Some(&scene))?;
         let camera = self.camera.clone().or_else(|| scene.camera_names().into_iter().next()).unwrap_or_default();
         let facts = SceneFacts {
-            name: Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            name: place.name.clone(),
             identity: source.identity()?,
             content: source.content()?,
             environment: source.environment_identity()?,
@@ -248,7 +253,7 @@ impl Args {
             seed: self.seed,
             reference_share: self.reference_share,
             reference_samples: self.reference_samples,
-            path_tracer: Document::load("path_tracer.toml", &files())?,
+            path_tracer: built_in("path_tracer")?,
             cache: self.cache.clone().unwrap_or_else(cache_folder),
             folder: self.output.clone(),
             explain_bias: self.explain_bias,

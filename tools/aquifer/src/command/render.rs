@@ -15,7 +15,7 @@ use crate::{
     value::{self, Frames},
 };
 use aquifer_lab::atomic;
-use job::Job;
+use job::{FRAMES_END, Job};
 use std::{path::PathBuf, time::Instant};
 
 /// Frames where neither --frames nor --time says anything.
@@ -80,6 +80,9 @@ pub fn run(args: Args, ui: &Ui) -> Result<(), Failure> {
     interrupt::listen();
     if let Some(Frames::Range(range)) = &args.frames {
         return sequence::run(&args, range.clone(), ui);
+    }
+    if u64::from(args.first_frame) + args.goal().frames.unwrap_or(1) > FRAMES_END {
+        return Err(Failure::new("so many frames from --first-frame on cannot be numbered: they end at 2³²"));
     }
     for path in &args.outputs {
         atomic::check_writable(path)?;

@@ -3,7 +3,7 @@
 use crate::{
     cli::VERSION,
     failure::Failure,
-    source::{AdapterArgs, GraphArgs, ShaderArgs, load_scene},
+    source::{AdapterArgs, GraphArgs, ShaderArgs, built_in, load_scene},
     ui::Ui,
 };
 use aquifer_graph::{Document, Transport};
@@ -153,7 +153,7 @@ impl Args {
         ui: &Ui,
     ) -> Result<Vec<(Row, Option<Pictures>)>, Failure> {
         let effort = Effort { seeds: [Effort::default().seeds[0].min(self.seeds), self.seeds], truth: self.truth_samples };
-        let baseline = document(BASELINE)?;
+        let baseline = built_in(BASELINE)?;
         let mut rows = Vec::new();
         for case in cases {
             let mut bench = Bench::new(context, case, &baseline, effort, &self.shaders.folders);

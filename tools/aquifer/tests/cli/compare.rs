@@ -76,6 +76,58 @@ fn jobs_make_the_comparison() {
     with(&["--merge"]).fails(1, "times of different adapters are not merged");
 }
 
+/// A triangle before a camera; where its corners are, another file says.
+const TRIANGLE: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+"nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]}],
+"cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+"materials": [{"emissiveFactor": [1, 1, 1]}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36, "uri": "corners.bin"}]}"#;
+
+/// Writes such a scene, of that size.
+fn triangle(folder: &Path, size: f32) -> String {
+    std::fs::create_dir_all(folder).unwrap();
+    let corners: Vec<u8> = [-1.0, -1.0, 0.0, 1.0, -1.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|x: &f32| (size * x).to_le_bytes()).collect();
+    std::fs::write(folder.join("corners.bin"), corners).unwrap();
+    std::fs::write(folder.join("scene.gltf"), TRIANGLE).unwrap();
+    folder.join("scene.gltf").to_str().unwrap().to_owned()
+}
+
+#[test]
+fn scenes_of_one_name_stay_apart_and_edited_ones_are_measured_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let scenes = [triangle(&path("near"), 1.0), triangle(&path("far"), 0.5)];
+    let with = |more: &[&str]| {
+        let all =
+            ["compare", "light_sampling", "--scene", &scenes[0], &scenes[1], "--size", "16x9", "--seeds", "2", "--reference-samples", "1"];
+        let out = ["-o", path("out").to_str().unwrap(), "--cache", path("cache").to_str().unwrap()].map(str::to_owned);
+        aquifer(&all.iter().copied().chain(out.iter().map(String::as_str)).chain(more.iter().copied()).collect::<Vec<&str>>())
+    };
+    assert_eq!(with(&["--shard", "0/1"]).code, 0);
+    assert_eq!(with(&["--merge"]).code, 0);
+    let merged = report(&path("out"));
+    let found = |scene: &Value| (scene["name"].as_str().unwrap().to_owned(), scene["cells"].as_array().unwrap().len());
+    let found: Vec<(String, usize)> = merged["scenes"].as_array().unwrap().iter().map(found).collect();
+    assert_eq!(found, [("scene".to_owned(), 1), ("scene-2".to_owned(), 1)]);
+    assert_eq!(names(&path("out/images")), ["scene", "scene-2"]);
+
+    // Another corner makes another job, and so do other shaders and references.
+    let missing = |more: &[&str]| with(&[&["--status"], more].concat()).succeeds().out.matches("\tmissing\t").count();
+    assert_eq!(missing(&[]), 0);
+    triangle(&path("far"), 0.25);
+    assert_eq!(missing(&[]), 1);
+    with(&["--merge"]).fails(1, "1 of 2 jobs are missing");
+    std::fs::create_dir_all(path("shaders/base")).unwrap();
+    let shaders = path("shaders").to_str().unwrap().to_owned();
+    let folder = ["--shaders", &shaders];
+    assert_eq!(missing(&folder), 1, "nothing is in there yet");
+    std::fs::write(path("shaders/base/mine.wgsl"), "const MINE: u32 = 1u;\n").unwrap();
+    assert_eq!([missing(&folder), missing(&["--keep-all"]), missing(&["--reference-share", "0.5"])], [2, 2, 2]);
+}
+
 #[test]
 fn what_cannot_be_compared_is_said() {
     let folder = tempfile::tempdir().unwrap();

@@ -109,6 +109,51 @@ fn without_a_mean_the_film_is_the_last_frame() {
 }
 
 #[test]
+fn frames_have_numbers_up_to_the_last() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("a.exr");
+    render(&out, &["--first-frame", "4294967290", "--frames", "64"]).fails(1, "they end at 2³²");
+    assert!(names(folder.path()).is_empty());
+    if !adapter() {
+        return;
+    }
+    for end in [&["--frames", "2"], &["--time", "600"]] {
+        let run = render(&out, &[&["--first-frame", "4294967294"], &end[..]].concat()).succeeds();
+        assert_eq!(run.err.contains("the render ends before its time"), end[0] == "--time", "{}", run.err);
+        let facts = Film::read(&out).expect("it was written").facts.expect("it says what made it");
+        assert_eq!(facts.runs, aquifer_lab::film::Runs::one(0, 4_294_967_294, 2));
+    }
+}
+
+/// A triangle five kilometres from the world's origin, and a camera before it.
+const FAR: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+"nodes": [{"mesh": 0, "translation": [5000, 0, 0]}, {"camera": 0, "translation": [5000, 0, 3]}],
+"cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn one_looks_from_points_of_the_world() {
+    if !adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    std::fs::write(at("far.gltf"), FAR).expect("a file");
+    let film = |options: &[&str]| {
+        let args = ["render", "gbuffer_view", "--scene", &at("far.gltf"), "--size", "16x9", "--frames", "1", "-o", &at("a.exr")];
+        aquifer(&[&args[..], options].concat()).succeeds();
+        Film::read(Path::new(&at("a.exr"))).expect("it was written")
+    };
+    let (named, placed) = (film(&[]), film(&["--look", "5000,0,3:5000,0,0"]));
+    assert!(named.depth.as_ref().is_some_and(|depth| depth.iter().any(|depth| depth.is_finite())), "the triangle is seen");
+    assert_eq!((named.color, named.depth), (placed.color, placed.depth));
+    assert_eq!(placed.facts.map(|facts| facts.camera).as_deref(), Some("[5000.0, 0.0, 3.0] looking at [5000.0, 0.0, 0.0]"));
+}
+
+#[test]
 fn failures_leave_nothing_behind() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("a.exr");

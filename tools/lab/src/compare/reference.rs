@@ -8,10 +8,10 @@ use super::{error::CompareError, observer::Observer, subject::Stage};
 use crate::{
     atomic,
     capture::Capture,
-    film::{Facts, Film, GraphText, Runs, merge},
+    film::{Facts, Film, GraphText, Packing, Runs, merge},
 };
 use aquifer_graph::{Document, Graph, Plan, Source, Transport};
-use aquifer_render::{Renderer, RendererOptions, SceneGlobals, View};
+use aquifer_render::{Registry, Renderer, RendererOptions, SceneGlobals, View};
 use serde::{Deserialize, Serialize};
 use std::{
     fs,
@@ -50,6 +50,7 @@ pub struct Tracer {
     renderer: Renderer,
     capture: Capture,
     frames: u32,
+    time: f32,
 }
 
 /// What names a reference: everything that decides its expectation.
@@ -82,7 +83,7 @@ impl Tracer {
         let renderer = Renderer::new(&stage.context, &stage.registry, plan, Box::new(globals), options)?;
         let pixels = u64::from(stage.size[0]) * u64::from(stage.size[1]);
         let frames = (CHUNK_PATHS / (pixels * u64::from(SAMPLES)).max(1)).clamp(2, 64) as u32;
-        Ok(Self { graph, renderer, capture, frames })
+        Ok(Self { graph, renderer, capture, frames, time })
     }
 
     /// Samples of one chunk.
@@ -101,8 +102,8 @@ impl Tracer {
 
 impl Reference {
     /// Opens the entry for what `tracer` renders; a damaged one counts as absent, and the observer is told.
-    pub fn open(folder: &Path, stage: &Stage, tracer: &Tracer, content: &Content<'_>, time: f32, observer: &mut dyn Observer) -> Self {
-        let [width, height] = stage.size;
+    pub fn open(folder: &Path, stage: &Stage, tracer: &Tracer, content: &Content<'_>, observer: &mut dyn Observer) -> Self {
+        let ([width, height], time) = (stage.size, tracer.time);
         let about = format!(
             "scene {}, environment {}, camera {}, time {time}, {width}x{height}, centred {}, graph {}, shaders {}",
             content.scene,
@@ -110,13 +111,17 @@ impl Reference {
             content.camera,
             stage.centred,
             tracer.graph.digest(),
-            shaders(stage, tracer.renderer.plan()),
+            shaders(&stage.registry, tracer.renderer.plan()),
         );
         let key = blake3::hash(about.as_bytes()).to_hex()[..32].to_owned();
         let empty = Entry { about, ..Entry::default() };
         let mut reference = Self { folder: folder.to_owned(), key, transport: tracer.graph.transport(), entry: empty, film: None };
         match reference.load() {
-            Ok(Some((entry, film))) => (reference.entry, reference.film) = (entry, Some(film)),
+            Ok(Some((entry, mut film))) => {
+                // Films of older programs say 0 of any time.
+                film.facts.iter_mut().for_each(|facts| facts.animation_time = time);
+                (reference.entry, reference.film) = (entry, Some(film));
+            }
             Ok(None) => {}
             Err(why) => observer.warn(&format!("reference {} in the cache is damaged ({why}): it is made again", reference.key)),
         }
@@ -161,7 +166,7 @@ impl Reference {
             scene: content.scene.to_owned(),
             environment: content.environment.map(str::to_owned),
             camera: content.camera.to_owned(),
-            animation_time: 0.0,
+            animation_time: tracer.time,
             transport: self.transport.to_string(),
             runs: Runs::one(FIRST_SEED + u64::from(chunk), 0, u64::from(tracer.frames)),
             adapter: stage.context.adapter().name.clone(),
@@ -172,18 +177,26 @@ impl Reference {
             Some(film) => merge(film, &more)?,
             None => more,
         };
+        self.keep(film, chunk + 1)
+    }
+
+    fn keep(&mut self, film: Film, chunks: u32) -> Result<(), CompareError> {
         fs::create_dir_all(&self.folder).map_err(|source| CompareError::Io { path: self.folder.clone(), source })?;
-        let path = self.film_path(chunk + 1);
-        film.write(&path)?;
-        let bytes = fs::read(&path).map_err(|source| CompareError::Io { path, source })?;
-        self.entry.chunks = chunk + 1;
-        self.entry.hash = blake3::hash(&bytes).to_hex().to_string();
+        let hash = film.write_hashed(&self.film_path(chunks), Packing::Packed)?;
+        self.entry = Entry { chunks, hash: hash.to_hex().to_string(), ..self.entry.clone() };
         let text = serde_json::to_vec_pretty(&self.entry).expect("an entry is plain data");
         atomic::write(&self.entry_path(), &text)?;
-        // The older film is of no use now; that it is still there does no harm.
-        let _ = fs::remove_file(self.film_path(chunk));
         self.film = Some(film);
+        self.forget_older();
         Ok(())
+    }
+
+    /// Removes the film of one chunk less, unless another process has written the entry since: it may name that film. A film too many does no harm.
+    fn forget_older(&self) {
+        let found = fs::read(self.entry_path()).ok().and_then(|text| serde_json::from_slice::<Entry>(&text).ok());
+        if found.as_ref() == Some(&self.entry) {
+            let _ = fs::remove_file(self.film_path(self.entry.chunks - 1));
+        }
     }
 
     /// Mean and variance of the mean; `None` before the first chunk.
@@ -208,12 +221,64 @@ impl Reference {
 }
 
 /// Hash of the shaders of a plan, linked for a scene: the version of the code that decides the picture.
-pub fn shaders(stage: &Stage, plan: &Plan) -> String {
+pub fn shaders(registry: &Registry, plan: &Plan) -> String {
     let mut hash = blake3::Hasher::new();
     for step in &plan.steps {
-        if let Ok(known) = stage.registry.known(&step.kind, &step.slots) {
+        if let Ok(known) = registry.known(&step.kind, &step.slots) {
             hash.update(known.composed.text.as_bytes());
         }
     }
     hash.finalize().to_hex()[..16].to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread;
+
+    fn reference(folder: &Path) -> Reference {
+        let entry = Entry { about: "a scene".into(), ..Entry::default() };
+        Reference { folder: folder.to_owned(), key: "key".into(), transport: Transport::Emission, entry, film: None }
+    }
+
+    fn film(chunks: u32) -> Film {
+        Film::new([8, 8], vec![[chunks as f32; 3]; 64]).unwrap()
+    }
+
+    #[test]
+    fn what_was_kept_is_found_and_what_it_replaces_is_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut kept = reference(folder.path());
+        for chunks in [1, 2] {
+            kept.keep(film(chunks), chunks).unwrap();
+        }
+        let (entry, found) = reference(folder.path()).load().unwrap().unwrap();
+        assert_eq!((entry, found), (kept.entry.clone(), film(2)));
+        assert!(!kept.film_path(1).exists());
+    }
+
+    #[test]
+    fn the_film_of_another_process_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let [mut late, mut early] = [reference(folder.path()), reference(folder.path())];
+        late.keep(film(1), 1).unwrap();
+        late.keep(film(2), 2).unwrap();
+        // Another, which knew of no entry, keeps its first chunk just before the older film would go.
+        early.keep(film(1), 1).unwrap();
+        late.forget_older();
+        assert!(reference(folder.path()).load().unwrap().is_some_and(|(entry, _)| entry == early.entry));
+        // And one whose film another removes as soon as it is there can still say what it wrote.
+        let (path, done) = (early.film_path(3), std::sync::atomic::AtomicBool::new(false));
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                while !done.load(std::sync::atomic::Ordering::Relaxed) {
+                    let _ = fs::remove_file(&path);
+                }
+            });
+            let kept = early.keep(film(3), 3);
+            done.store(true, std::sync::atomic::Ordering::Relaxed);
+            kept.unwrap();
+        });
+        assert_eq!(early.entry.chunks, 3);
+    }
 }

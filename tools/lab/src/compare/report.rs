@@ -156,7 +156,7 @@ pub struct GraphFacts {
 pub struct SceneResult {
     /// Short and unique in the report.
     pub name: String,
-    /// A built-in scene's name, or a file's name with the hash of its bytes.
+    /// A built-in scene's name, or a file's name with the hash of its bytes and of the files that it names.
     pub identity: String,
     /// The environment laid over the scene's own, as `identity`.
     pub environment: Option<String>,

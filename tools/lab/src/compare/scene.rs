@@ -1,4 +1,5 @@
-//! One scene from beginning to end: measured, held against references, judged.
+//! One scene from beginning to end: measured, held against references, weighed. Who is better is decided over all scenes of a report
+//! ([`judge::decide`]).
 
 use super::{
     bench::{Bench, Entrant},
@@ -9,7 +10,6 @@ use super::{
     explain::Question,
     further, judge,
     observer::Observer,
-    reach::equal_error,
     reference::{Content, Reference, Tracer, shaders},
     report::{BiasFigures, Cell, Correlation, Explained, Protocol, ReferenceFacts, SceneResult},
     store::{Round, Store, make_folder},
@@ -87,7 +87,7 @@ pub struct Compared {
     pub clock: aquifer_render::Clock,
 }
 
-/// Measures and judges.
+/// Measures and weighs.
 ///
 /// # Errors
 /// Whatever a graph, the device or the disk refuses. What was measured until then is kept, and a second call goes on from there.
@@ -172,7 +172,7 @@ fn state_name(stage: &Stage, entrants: &[Entrant], facts: &SceneFacts, request: 
     for entrant in entrants {
         let graph = stage.graph(&entrant.document, None)?;
         let plan = graph.plan(&stage.registry, &[])?;
-        text += &format!("\n{} {}", graph.digest(), shaders(stage, &plan));
+        text += &format!("\n{} {}", graph.digest(), shaders(&stage.registry, &plan));
     }
     Ok(format!("{}-{}", facts.name, &blake3::hash(text.as_bytes()).to_hex()[..12]))
 }
@@ -231,10 +231,7 @@ impl Scene<'_> {
         result.cells = cells.into_iter().flatten().collect();
         self.write_images(&mut result.cells, &result.references)?;
         let names: Vec<String> = self.entrants.iter().map(|entrant| entrant.name.clone()).collect();
-        result.pairs = judge::pairs(&result.cells, &names);
-        if let Protocol::Accumulate { .. } = self.request.protocol {
-            result.equal_error = equal_error(&result.cells, &names, self.request.equal_error);
-        }
+        judge::weigh(&mut result, &names, self.request.protocol, self.request.equal_error);
         self.warn_of(&result);
         Ok(result)
     }
@@ -410,7 +407,7 @@ impl Scene<'_> {
         let facts = self.facts;
         let environment = facts.environment.as_deref();
         let content = Content { scene: &facts.content, environment, camera: &facts.camera, version: &request.version };
-        let mut reference = Reference::open(&request.cache, self.stage, &tracer, &content, time, observer);
+        let mut reference = Reference::open(&request.cache, self.stage, &tracer, &content, observer);
         let mut wanted = reference.samples().max(1);
         loop {
             while reference.samples() < wanted.min(request.reference_samples).max(1) {

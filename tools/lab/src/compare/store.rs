@@ -5,7 +5,10 @@
 //! there and every film in it has the hash noted; that file is written last.
 
 use super::{budget::Offer, error::CompareError};
-use crate::{atomic, film::Film};
+use crate::{
+    atomic,
+    film::{Film, Packing},
+};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
     fs, io,
@@ -117,7 +120,7 @@ impl Store {
         let round: Round = self.json(&round_name(number))?;
         let takes = round.runs.iter().flatten().flat_map(|run| &run.takes);
         let is_here = |take: &Take| Path::new(&take.film).file_name().is_some_and(|name| name == take.film.as_str());
-        let as_kept = |take: &Take| fs::read(self.folder.join(&take.film)).is_ok_and(|bytes| hash(&bytes) == take.hash);
+        let as_kept = |take: &Take| fs::read(self.folder.join(&take.film)).is_ok_and(|bytes| short(blake3::hash(&bytes)) == take.hash);
         let whole = takes.into_iter().all(|take| is_here(take) && as_kept(take));
         whole.then_some(round)
     }
@@ -135,10 +138,8 @@ impl Store {
     /// # Errors
     /// When the disk refuses.
     pub fn keep_film(&self, name: String, film: &Film) -> Result<(String, String), CompareError> {
-        let path = self.folder.join(&name);
-        film.write_plain(&path)?;
-        let bytes = fs::read(&path).map_err(|source| CompareError::Io { path, source })?;
-        Ok((name, hash(&bytes)))
+        let hash = film.write_hashed(&self.folder.join(&name), Packing::Plain)?;
+        Ok((name, short(hash)))
     }
 
     /// The film of a take.
@@ -163,8 +164,8 @@ fn round_name(number: u32) -> String {
     format!("round-{number:04}.json")
 }
 
-fn hash(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex()[..32].to_owned()
+fn short(hash: blake3::Hash) -> String {
+    hash.to_hex()[..32].to_owned()
 }
 
 /// Makes a folder that may be there.

@@ -141,7 +141,7 @@ impl Subject {
         mut show: impl FnMut(u32, &Self, Shot) -> Result<(), CompareError>,
     ) -> Result<f64, CompareError> {
         let began = Instant::now();
-        self.renderer.reseed(seed)?;
+        self.begin(seed)?;
         for _ in 0..schedule.warm_up {
             self.renderer.frame()?;
         }
@@ -161,6 +161,14 @@ impl Subject {
             show(frame, self, Shot { film, passes, wall_ms: 1e3 * wall.as_secs_f64() })?;
         }
         Ok(rendering.as_secs_f64())
+    }
+
+    /// Begins anew with `seed`, and waits until all memory is cleared: that is no frame's work.
+    fn begin(&mut self, seed: u64) -> Result<(), CompareError> {
+        self.renderer.reseed(seed)?;
+        let context = self.renderer.context();
+        let cleared = context.queue().submit([]);
+        Ok(context.wait(&cleared, "restart")?)
     }
 
     /// The smallest and largest value of the knob, from its parameter's range and type; `None` without a knob.
@@ -185,4 +193,43 @@ pub struct KnobRange {
     pub now: f64,
     /// Only whole numbers.
     pub whole: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage;
+    use aquifer_graph::Shelf;
+    use aquifer_render::ContextOptions;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    #[test]
+    fn a_run_begins_with_an_idle_device() {
+        if aquifer_render::adapters().is_empty() {
+            assert!(std::env::var_os("AQUIFER_REQUIRE_ADAPTER").is_none(), "no adapter was found, and AQUIFER_REQUIRE_ADAPTER is set");
+            return;
+        }
+        let scene = Arc::new((aquifer_scenes::by_name("cornell").unwrap().make)().finish().unwrap());
+        let stage = Stage {
+            context: Context::new(&ContextOptions::default()).unwrap(),
+            registry: stage::registry(Some(&scene), &[]).unwrap(),
+            scene,
+            camera: None,
+            time: 0.0,
+            step: 0.0,
+            size: [1280, 720],
+            centred: true,
+        };
+        let text = "title = 'depth'\ntransport = 'emission'\noutput = 'debug_view.color'\n\
+                    [pass.gbuffer_traced]\n[pass.debug_view]\nin.surface = 'gbuffer_traced.surface'\nin.motion = 'gbuffer_traced.motion'\n";
+        let document = Document::parse(Source::new("depth.toml", text), &Shelf::default()).unwrap();
+        let mut subject = stage.subject(&document, None, 0).unwrap();
+        subject.begin(1).unwrap();
+        // What is still under way now is waited for by this; asking for nothing more shows whether there was anything.
+        let idle = Arc::new(AtomicBool::new(false));
+        let seen = idle.clone();
+        stage.context.queue().on_submitted_work_done(move || seen.store(true, Ordering::SeqCst));
+        stage.context.queue().submit([]);
+        assert!(idle.load(Ordering::SeqCst), "memory is still being cleared");
+    }
 }

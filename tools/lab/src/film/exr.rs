@@ -4,7 +4,6 @@ mod attributes;
 mod order;
 
 use super::{Film, FilmError, channels};
-use crate::atomic;
 use exr::{
     meta::MetaData,
     prelude::{
@@ -26,22 +25,22 @@ type FlatLayer = Layer<AnyChannels<FlatSamples>>;
 
 /// How samples are stored; nothing is lost either way.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Packing {
+pub(crate) enum Packing {
     /// ZIP16.
     Packed,
-    /// As they are.
+    /// As they are: for films that are noise, which are a third larger then and written at once.
     Plain,
 }
 
-/// Equal films make equal bytes.
-pub(super) fn write(film: &Film, path: &Path, packing: Packing) -> Result<(), FilmError> {
+/// The bytes of a file; equal films make equal ones. Errors name `path`.
+pub(super) fn encode(film: &Film, path: &Path, packing: Packing) -> Result<Vec<u8>, FilmError> {
     let failed = |source| FilmError::Exr { path: path.to_owned(), source };
     let image = Image::from_layer(layer(film, path, packing)?);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).map_err(failed)?;
     let mut bytes = bytes.into_inner();
     order::sort_attributes(&mut bytes);
-    Ok(atomic::write(path, &bytes)?)
+    Ok(bytes)
 }
 
 fn layer(film: &Film, path: &Path, packing: Packing) -> Result<FlatLayer, FilmError> {

@@ -11,7 +11,7 @@ pub struct Facts {
     pub render_seconds: f64,
     /// The graph.
     pub graph: GraphText,
-    /// Name of a built-in scene, or a file's name with the hash of its bytes.
+    /// Name of a built-in scene, or a file's name with the hash of its bytes and of the files that it names.
     pub scene: String,
     /// The environment map laid over the scene's own, as `scene`.
     pub environment: Option<String>,

@@ -62,6 +62,9 @@ pub enum Refused {
     /// The device refuses it.
     #[error(transparent)]
     Render(#[from] aquifer_render::Error),
+    /// Making it panicked.
+    #[error("{0}")]
+    Panic(String),
 }
 
 impl From<Faults> for Refused {

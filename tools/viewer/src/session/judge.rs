@@ -51,25 +51,32 @@ pub fn start(board: Arc<Shared>) -> Sender<Task> {
 
 fn judge(board: &Shared, tasks: &Receiver<Task>) {
     let mut curves: Vec<Vec<Point>> = Vec::new();
-    let mut before = None;
+    let mut before: Option<Arc<Truth>> = None;
     while let Ok(task) = tasks.recv() {
         let task = tasks.try_iter().last().unwrap_or(task);
-        if before.replace((task.truth.about.clone(), task.truth.samples)) != Some((task.truth.about.clone(), task.truth.samples)) {
+        if before.replace(task.truth.clone()).is_none_or(|before| !Arc::ptr_eq(&before, &task.truth)) {
             curves.clear();
         }
         curves.resize(task.pictures.len(), Vec::new());
         for (side, picture) in task.pictures.iter().enumerate() {
-            let Some(judged) = picture.as_ref().and_then(|picture| one(picture, &task, &mut curves[side])) else { continue };
+            let judged = picture.as_ref().and_then(|picture| one(picture, &task, &mut curves[side])).map(Arc::new);
             board.post(|board| {
-                if let Some(side) = board.sides.get_mut(side) {
-                    side.judged = Some(Arc::new(judged));
+                // What was withdrawn meanwhile stays so.
+                let stands = board.truth.as_ref().is_some_and(|truth| truth.about == task.truth.about);
+                if let Some(side) = board.sides.get_mut(side).filter(|_| stands) {
+                    side.judged = judged;
                 }
             });
         }
     }
 }
 
+/// Errors of a picture; `None` where the reference is of something else.
 fn one(picture: &Picture, task: &Task, curve: &mut Vec<Point>) -> Option<Judged> {
+    if picture.transport != task.truth.about.transport {
+        curve.clear();
+        return None;
+    }
     let pair = Pair::new(&picture.film, &task.truth.film).ok()?;
     let area = Area::whole(picture.film.size);
     let value = |metric: Metric| Some((metric, pair.measure(metric, &area).ok()??.value));

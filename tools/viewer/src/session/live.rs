@@ -8,7 +8,7 @@ use crate::{
     record::{self, Leaf, Record},
     testimony::TESTIMONY,
 };
-use aquifer_graph::{Direction, Graph, NeedsAll, Value};
+use aquifer_graph::{Direction, Graph, NeedsAll, Transport, Value};
 use aquifer_lab::{
     capture::{Capture, CaptureError},
     film::Film,
@@ -31,6 +31,8 @@ pub struct Picture {
     pub spent: f64,
     /// Where from, and when.
     pub moment: Moment,
+    /// Which light paths.
+    pub transport: Transport,
     /// Counts pictures of the session: another number, another picture.
     pub number: u64,
 }
@@ -44,7 +46,7 @@ pub struct Watched {
     pub element: String,
     /// Numbers of its elements that can be looked at.
     pub members: Vec<String>,
-    /// In the units of the resource; grey where it is a single number. `None` where it has no element a pixel.
+    /// In the units of the resource; grey where it is a single number. `None` where it has no number a pixel.
     pub film: Option<Film>,
     /// Smallest and largest number of it.
     pub range: [f32; 2],
@@ -141,7 +143,8 @@ impl Live {
         let film = Film::new(self.size(), color).ok().filter(|_| self.frames > 0)?;
         let samples = u64::from(self.frames) * u64::from(Capture::samples_per_frame(&self.running));
         let first = self.renderer.next_frame().wrapping_sub(self.frames);
-        Some(Picture { film, first, frames: self.frames, samples, spent: self.spent, moment: moment.clone(), number })
+        let (frames, spent, transport) = (self.frames, self.spent, self.running.transport());
+        Some(Picture { film, first, frames, samples, spent, moment: moment.clone(), transport, number })
     }
 
     pub fn times(&self) -> Vec<PassTime> {
@@ -165,7 +168,7 @@ impl Live {
             Some(leaf) => [leaf.number(element) as f32; 3],
             None => [0, 1, 2].map(|channel| leaves[channel].number(element) as f32),
         };
-        let color: Vec<[f32; 3]> = bytes.chunks_exact(stride).map(pixel).collect();
+        let color: Vec<[f32; 3]> = if leaves.is_empty() { Vec::new() } else { bytes.chunks_exact(stride).map(pixel).collect() };
         let finite = || color.iter().flatten().copied().filter(|number| number.is_finite());
         let range = [finite().fold(f32::INFINITY, f32::min), finite().fold(f32::NEG_INFINITY, f32::max)];
         let members = if leaves.len() > 1 { leaves.iter().map(|leaf| leaf.path.clone()).collect() } else { Vec::new() };

@@ -15,8 +15,10 @@ pub enum Camera {
 /// What is rendered: both sides render the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
-    /// Where the camera stands.
+    /// Where the camera stands, counted from `origin`.
     pub camera: aquifer_scene::Camera,
+    /// In the scene's own world, see [`aquifer_scene::Moment::origin`].
+    pub origin: glam::DVec3,
     /// Name of the scene's camera that stands there.
     pub name: Option<String>,
     /// Seconds into the animation.

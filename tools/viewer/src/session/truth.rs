@@ -121,7 +121,7 @@ fn fulfil(workshop: &Workshop, wish: &Wish, stop: &AtomicBool, tell: &dyn Fn(New
     };
     let content = Content { scene: &scene, environment: wish.environment.as_deref(), camera: &about.camera, version: &wish.version };
     let mut tracer = Tracer::new(&stage, &(workshop.load)("path_tracer").map_err(CompareError::from)?, about.transport, about.time)?;
-    let mut reference = Reference::open(&wish.cache, &stage, &tracer, &content, about.time, &mut Unwatched);
+    let mut reference = Reference::open(&wish.cache, &stage, &tracer, &content, &mut Unwatched);
     let show = |reference: &Reference| {
         if let Some(film) = reference.film() {
             let truth = Truth { film: film.clone(), samples: reference.samples(), about: about.clone() };

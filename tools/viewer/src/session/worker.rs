@@ -53,6 +53,8 @@ struct Worker {
     scale: Scale,
     turns: Turns,
     camera: Camera,
+    /// The same at all times.
+    origin: glam::DVec3,
     time: f32,
     duration: f32,
     plays: bool,
@@ -129,6 +131,7 @@ impl Worker {
             scale: Scale::new(opening.size),
             turns: Turns::default(),
             camera,
+            origin: moment.origin,
             time: 0.0,
             duration,
             plays: false,
@@ -220,16 +223,16 @@ impl Worker {
 
     /// Where the picture is taken from now.
     fn now(&self) -> Result<Moment, String> {
-        let time = self.time;
+        let (time, origin) = (self.time, self.origin);
         match &self.camera {
-            Camera::Free(camera) => Ok(Moment { camera: *camera, name: None, time }),
+            Camera::Free(camera) => Ok(Moment { camera: *camera, origin, name: None, time }),
             Camera::Named(wanted) => {
                 let name = wanted.clone().or_else(|| self.workshop.scene.camera_names().into_iter().next());
                 match &self.moment {
                     Some(known) if known.time == time && known.name == name => Ok(known.clone()),
                     _ => {
                         let camera = self.workshop.scene.at(time, name.as_deref()).map_err(|error| error.to_string())?.camera;
-                        Ok(Moment { camera, name, time })
+                        Ok(Moment { camera, origin, name, time })
                     }
                 }
             }
@@ -260,8 +263,8 @@ impl Worker {
         self.moment = Some(moment);
         self.updates += 1;
         self.update = if self.updates < 2 { spent.as_secs_f64() } else { self.update + NEWEST * (elapsed.as_secs_f64() - self.update) };
-        self.post_pictures();
         self.wish_truth();
+        self.post_pictures();
         let graphs = self.desks.iter().filter(|desk| desk.live.is_some()).count();
         if self.scale.note(spent.as_secs_f64() * 1e3, graphs) {
             self.resize();

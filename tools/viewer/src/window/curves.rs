@@ -26,6 +26,11 @@ impl Viewer {
             }
         });
         self.figures(ui, &judged);
+        for (side, name) in SIDE_NAMES.iter().enumerate() {
+            if let Some(why) = self.board.unjudged(side) {
+                ui.label(RichText::new(format!("{name} is not judged: {why}.")).color(readable(ui, side)));
+            }
+        }
         if let [Some(a), Some(b)] = judged.as_slice()
             && let Some((seconds, ratio)) = at_equal_time(&a.curve, &b.curve)
         {

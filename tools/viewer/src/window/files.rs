@@ -86,7 +86,7 @@ impl Viewer {
     }
 
     fn save_diff(&self, side: usize) -> Result<String, String> {
-        let shown = self.board.sides[side].shown.as_ref().ok_or("there is no graph yet")?;
+        let shown = self.board.sides.get(side).and_then(|board| board.shown.as_ref()).ok_or("there is no graph yet")?;
         let path = self.path("toml");
         let folder = Path::new(&path).parent().unwrap_or(Path::new(""));
         let text = save::diff(&self.recipes[side], &shown.graph, &shown.written, folder);
@@ -95,7 +95,7 @@ impl Viewer {
     }
 
     fn save_film(&self, side: usize) -> Result<String, String> {
-        let (board, path) = (&self.board.sides[side], self.path("exr"));
+        let (board, path) = (self.board.sides.get(side).ok_or("there is no graph yet")?, self.path("exr"));
         let picture = board.picture.as_ref().ok_or("there is no picture yet")?;
         let graph = &board.shown.as_ref().ok_or("there is no graph yet")?.graph;
         let text =
@@ -140,7 +140,7 @@ impl Viewer {
         if self.state.show != Show::Picture {
             return Err("a command renders a picture: show that first".to_owned());
         }
-        let picture = self.board.sides[side].picture.as_ref().ok_or("there is no picture yet")?;
+        let picture = self.board.sides.get(side).and_then(|board| board.picture.as_ref()).ok_or("there is no picture yet")?;
         Ok(save::render_command(&self.recipes[side], &self.scene, &self.options, self.seed, picture))
     }
 }

@@ -70,7 +70,7 @@ fn key(board: &Board, state: &State, side: usize) -> Key {
     let number = |side: usize| board.sides.get(side).and_then(|side| side.picture.as_ref()).map_or(0, |picture| picture.number);
     let pictures = if state.show == Show::Apart { [number(0), number(1)] } else { [number(side); 2] };
     let flip = |side: &Side| side.judged.as_ref()?.flip.as_ref().map(|map| Arc::as_ptr(map).addr());
-    let truth = board.truth.as_ref().filter(|_| state.show.wants_truth());
+    let truth = board.truth_of(side).filter(|_| state.show.wants_truth());
     let map = if state.show == Show::Flip { board.sides.get(side).and_then(flip).unwrap_or(0) } else { 0 };
     let watched = board.sides.get(side).and_then(|side| side.watched.as_ref()).map(|watched| Arc::as_ptr(watched).addr());
     let truth = truth.map(|truth| (truth.samples, map));
@@ -98,7 +98,7 @@ pub fn film(board: &Board, state: &State, side: usize) -> Option<(Film, Developi
         });
     }
     let picture = &board_side.picture.as_ref()?.film;
-    let truth = || board.truth.as_ref().map(|truth| &truth.film).filter(|truth| truth.size == picture.size);
+    let truth = || board.truth_of(side).map(|truth| &truth.film).filter(|truth| truth.size == picture.size);
     match state.show {
         Show::Picture => Some((picture.clone(), state.developing)),
         show if show.wants_truth() && truth().is_none() => Some((picture.clone(), state.developing)),

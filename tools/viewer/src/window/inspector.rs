@@ -17,8 +17,8 @@ impl Viewer {
             let [x, y] = [0, 1].map(|axis| (place[axis] * picture.film.size[axis] as f32) as u32);
             ui.label(RichText::new(format!("Pixel {x}, {y}")).heading());
         }
-        for (side, board) in self.board.sides.iter().enumerate() {
-            ui.label(RichText::new(format!("{}  {}", SIDE_NAMES[side], self.recipes[side].graph)).color(readable(ui, side)).strong());
+        for (side, (board, recipe)) in self.board.sides.iter().zip(&self.recipes).enumerate() {
+            ui.label(RichText::new(format!("{}  {}", SIDE_NAMES[side], recipe.graph)).color(readable(ui, side)).strong());
             if board.building {
                 ui.label("compiling: reservoirs must be kept for reading …");
             } else if board.records.is_empty() {

@@ -103,9 +103,8 @@ impl Viewer {
                 painter.text(cell.clip.center(), Align2::CENTER_CENTER, words, FontId::proportional(16.0), ui.visuals().weak_text_color());
             }
         }
-        let lacks = self.lacks(cell.side);
-        if !lacks.is_empty() {
-            tag(&painter, cell.clip.center_bottom() - vec2(0.0, 12.0), Align2::CENTER_BOTTOM, lacks, Color32::WHITE);
+        if let Some(lacks) = self.lacks(cell.side) {
+            tag(&painter, cell.clip.center_bottom() - vec2(0.0, 12.0), Align2::CENTER_BOTTOM, &lacks, Color32::WHITE);
         }
         if self.recipes.len() > 1 && self.state.show != Show::Apart {
             let right = self.state.layout == Layout::Split && cell.side == 1;
@@ -120,16 +119,22 @@ impl Viewer {
     }
 
     /// Why what was asked for is not what is seen.
-    fn lacks(&self, side: usize) -> &'static str {
-        let Some(board) = self.board.sides.get(side).filter(|board| board.picture.is_some()) else { return "" };
+    fn lacks(&self, side: usize) -> Option<String> {
+        let board = self.board.sides.get(side).filter(|board| board.picture.is_some())?;
         if board.watched.as_ref().is_some_and(|watched| watched.film.is_none()) {
-            return "this resource has no element a pixel";
+            return Some("this resource has no number a pixel".to_owned());
         }
-        match self.state.show {
-            show if show.wants_truth() && self.board.truth.is_none() => "there is no reference yet: the picture is shown",
-            Show::Flip if board.judged.as_ref().is_none_or(|judged| judged.flip.is_none()) => "FLIP is being measured",
-            _ => "",
+        if !self.state.show.wants_truth() {
+            return None;
         }
+        if self.board.truth.is_none() {
+            return Some("there is no reference yet: the picture is shown".to_owned());
+        }
+        if let Some(why) = self.board.unjudged(side) {
+            return Some(format!("{why}: the picture is shown"));
+        }
+        let measures = self.state.show == Show::Flip && board.judged.as_ref().is_none_or(|judged| judged.flip.is_none());
+        measures.then(|| "FLIP is being measured".to_owned())
     }
 
     fn split_slider(&mut self, ui: &egui::Ui, picture: Rect, area: Rect) {
@@ -266,7 +271,8 @@ impl Viewer {
             let painter = ui.painter().with_clip_rect(cell.clip);
             painter.rect_stroke(rect, 0.0, Stroke::new(3.0, Color32::from_black_alpha(160)), StrokeKind::Outside);
             painter.rect_stroke(rect, 0.0, Stroke::new(1.5, MARK), StrokeKind::Outside);
-            let told = self.board.sides[cell.side].records.iter().filter(|record| record.resource.ends_with(TESTIMONY));
+            let records = self.board.sides.get(cell.side).into_iter().flat_map(|board| board.records.iter());
+            let told = records.filter(|record| record.resource.ends_with(TESTIMONY));
             for line in told.flat_map(testimony::lines) {
                 let at = cell.picture.min + (vec2(line.pixel[0] as f32, line.pixel[1] as f32) + Vec2::splat(0.5)) * pixel;
                 tried(&painter, at, (0.5 * pixel.x).max(3.0), &line);

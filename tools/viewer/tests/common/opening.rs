@@ -9,8 +9,8 @@ pub fn opening(graphs: &[&str], scene: &'static str, shaders: Vec<PathBuf>) -> O
     let files = Layered { upper: FsFiles, lower: Shelf::new("built-in", aquifer_graphs::files()) };
     let name = |graph: &str| if graph.ends_with(".toml") { graph.to_owned() } else { format!("{graph}.toml") };
     let load_scene = move || {
-        let scene = (aquifer_scenes::by_name(scene).unwrap().make)().finish().map_err(|error| error.to_string())?;
-        Ok(Loaded { scene: Arc::new(scene), content: Arc::new(|| Ok("test".to_owned())), environment: None })
+        let made = (aquifer_scenes::by_name(scene).unwrap().make)().finish().map_err(|error| error.to_string())?;
+        Ok(Loaded { scene: Arc::new(made), content: Arc::new(move || Ok(scene.to_owned())), environment: None })
     };
     Opening {
         graphs: graphs.iter().map(|graph| Recipe::of(*graph)).collect(),

@@ -13,7 +13,7 @@ pub fn entrants(typed: &[String], settings: &[String], transport: Option<Transpo
         let graph = parts.next().unwrap_or_default().to_owned();
         let own = parts.map(|part| value::setting(part).map_err(|why| Failure::new(format!("`{part}` after graph `{graph}`: {why}"))));
         let own = own.collect::<Result<Vec<String>, Failure>>()?;
-        let name = unique(short(&graph, &own), &entrants);
+        let name = unique(short(&graph, &own), '#', |name| entrants.iter().any(|other| other.name == name));
         let settings: Vec<String> = settings.iter().cloned().chain(own).collect();
         let args = GraphArgs { graph, settings: settings.clone(), transport, shaders: ShaderArgs::default() };
         entrants.push(Entrant { name, document: args.document()?, settings });
@@ -26,9 +26,9 @@ fn short(graph: &str, settings: &[String]) -> String {
     settings.iter().fold(stem, |name, setting| name + "," + setting)
 }
 
-fn unique(name: String, others: &[Entrant]) -> String {
-    let taken = |name: &str| others.iter().any(|other| other.name == name);
-    let numbered = |number: u32| format!("{name}#{number}");
+/// The name, or where it is taken the name with a number after the mark.
+pub fn unique(name: String, mark: char, taken: impl Fn(&str) -> bool) -> String {
+    let numbered = |number: u32| format!("{name}{mark}{number}");
     if !taken(&name) { name } else { (2..).map(numbered).find(|name| !taken(name)).unwrap_or(name) }
 }
 

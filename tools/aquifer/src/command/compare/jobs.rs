@@ -1,15 +1,15 @@
 //! A comparison in pieces for batch systems: one job for every graph on every scene, each at its own frame time.
 //!
-//! A job's name follows from what it does, the graph's text included; its result is a report of its own that appears by renaming, and nothing else
-//! is shared but files.
+//! A job's name follows from what it does, what graph, scene and shaders hold included; its result is a report of its own that appears by renaming,
+//! and nothing else is shared but files.
 
-use super::Args;
+use super::{Args, scenes::Place};
 use crate::{failure::Failure, ui::Ui};
 use aquifer_lab::{
     atomic,
     compare::{
         bench::Entrant,
-        judge, reach,
+        judge,
         report::{Explained, Report, SceneResult},
     },
 };
@@ -42,7 +42,7 @@ pub struct JobArgs {
 /// One graph on one scene.
 struct Job<'a> {
     id: String,
-    scene: &'a str,
+    place: &'a Place,
     entrant: &'a Entrant,
     /// Its report.
     path: PathBuf,
@@ -55,15 +55,16 @@ fn shard(text: &str) -> Result<(usize, usize), String> {
 
 impl JobArgs {
     /// Does what is asked with the jobs; the report to go on with, or `None` when that was all.
-    pub fn run(&self, args: &Args, entrants: &[Entrant], ui: &Ui) -> Result<Option<Report>, Failure> {
-        let jobs = jobs(args, entrants);
+    pub fn run(&self, args: &Args, entrants: &[Entrant], places: &[Place], ui: &Ui) -> Result<Option<Report>, Failure> {
+        let jobs = jobs(args, entrants, places)?;
         if self.plan {
-            let line = |(number, job): (usize, &Job<'_>)| format!("{number}\t{}\t{}\t{}", job.id, job.scene, job.entrant.name);
+            let line = |(number, job): (usize, &Job<'_>)| format!("{number}\t{}\t{}\t{}", job.id, job.place.source.scene, job.entrant.name);
             ui.print(&jobs.iter().enumerate().map(line).collect::<Vec<_>>().join("\n"))?;
         } else if self.status {
             let word = |job: &Job<'_>| if job.path.exists() { "done" } else { "missing" };
-            let line =
-                |(number, job): (usize, &Job<'_>)| format!("{number}\t{}\t{}\t{}\t{}", job.id, word(job), job.scene, job.entrant.name);
+            let line = |(number, job): (usize, &Job<'_>)| {
+                format!("{number}\t{}\t{}\t{}\t{}", job.id, word(job), job.place.source.scene, job.entrant.name)
+            };
             ui.print(&jobs.iter().enumerate().map(line).collect::<Vec<_>>().join("\n"))?;
         } else if self.merge {
             return merge(args, entrants, &jobs).map(Some);
@@ -74,7 +75,7 @@ impl JobArgs {
                     ui.note(&format!("job {number} ({}) is done", job.id));
                     continue;
                 }
-                let report = args.compare(std::slice::from_ref(job.entrant), &[job.scene.to_owned()], ui)?;
+                let report = args.compare(std::slice::from_ref(job.entrant), std::slice::from_ref(job.place), ui)?;
                 super::write_json(&job.path, &report)?;
                 ui.note(&format!("job {number}: wrote {}", job.path.display()));
             }
@@ -104,16 +105,22 @@ impl JobArgs {
     }
 }
 
-fn jobs<'a>(args: &'a Args, entrants: &'a [Entrant]) -> Vec<Job<'a>> {
+fn jobs<'a>(args: &Args, entrants: &'a [Entrant], places: &'a [Place]) -> Result<Vec<Job<'a>>, Failure> {
     let folder = args.output.join("jobs");
-    let job = |scene: &'a str, entrant: &'a Entrant| {
-        let place = (scene, &args.environment, &args.camera, args.animation_time, args.step, args.size);
-        let what = format!("{place:?} {:?} {:?} {:?} {:?}", entrant.name, args.protocol(), args.budget, (args.seed, args.explain_bias));
-        let what = format!("{what} {:?}", entrant.document);
-        let id = blake3::hash(what.as_bytes()).to_hex()[..12].to_owned();
-        Job { path: folder.join(format!("{id}.json")), id, scene, entrant }
-    };
-    args.scenes.iter().flat_map(|scene| entrants.iter().map(move |entrant| job(scene, entrant))).collect()
+    let request = args.request()?;
+    let view = (&args.camera, args.animation_time, args.step, args.size);
+    let reference = (request.reference_share, request.reference_samples, &request.path_tracer);
+    let asked = (view, args.protocol(), args.budget, args.seed, args.explain_bias, args.shaders.content()?, reference);
+    let mut jobs = Vec::new();
+    for place in places {
+        let scene = (&place.name, place.source.content()?, place.source.environment_identity()?);
+        for entrant in entrants {
+            let what = format!("{scene:?} {asked:?} {:?} {:?}", entrant.name, entrant.document);
+            let id = blake3::hash(what.as_bytes()).to_hex()[..12].to_owned();
+            jobs.push(Job { path: folder.join(format!("{id}.json")), id, place, entrant });
+        }
+    }
+    Ok(jobs)
 }
 
 /// One report of all jobs, in the order of the plan; what is not of one kind is refused.
@@ -147,9 +154,9 @@ fn merge(args: &Args, entrants: &[Entrant], jobs: &[Job<'_>]) -> Result<Report, 
     }
     let names: Vec<String> = merged.graphs.iter().map(|graph| graph.name.clone()).collect();
     for scene in &mut merged.scenes {
-        scene.pairs = judge::pairs(&scene.cells, &names);
-        scene.equal_error = reach::equal_error(&scene.cells, &names, args.equal_error);
+        judge::weigh(scene, &names, merged.protocol, args.equal_error);
     }
+    judge::decide(&mut merged);
     Ok(merged)
 }
 

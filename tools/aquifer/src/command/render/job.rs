@@ -24,11 +24,16 @@ use std::{
     time::{Duration, Instant},
 };
 
+/// The number after that of the last frame there can be.
+pub const FRAMES_END: u64 = 1 << 32;
+
 /// The scene, the graph, and the renderer that holds both.
 pub struct Job<'a> {
     args: &'a Args,
     source: GraphArgs,
     scene: Arc<Scene>,
+    /// The scene as it was read, and the environment over it, as films name them.
+    identity: (String, Option<String>),
     view: View,
     graph: Graph,
     taken: Taken,
@@ -52,6 +57,7 @@ impl<'a> Job<'a> {
     /// What the arguments ask for, as time goes by; `edits` have the last word on the graph.
     pub fn at(args: &'a Args, view: View, first_frame: u32, edits: impl FnOnce(&Graph) -> Vec<Source>, ui: &Ui) -> Result<Self, Failure> {
         let scene = Arc::new(args.scene.load(ui)?);
+        let identity = (args.scene.identity()?, args.scene.environment_identity()?);
         let (mut graph, mut registry) = args.graph.check(Some(&scene))?;
         let edits = edits(&graph);
         let context = args.adapter.open()?;
@@ -65,7 +71,7 @@ impl<'a> Job<'a> {
         let options =
             RendererOptions { size: args.size, seed: args.seed, first_frame, counters: args.counters, ..RendererOptions::default() };
         let renderer = Renderer::new(&context, &registry, plan, Box::new(globals), options)?;
-        Ok(Self { args, source, scene, view, graph, taken, renderer })
+        Ok(Self { args, source, scene, identity, view, graph, taken, renderer })
     }
 
     /// Reads graph and shaders anew. When something is wrong with them, everything stays as it was.
@@ -94,13 +100,17 @@ impl<'a> Job<'a> {
         let mut progress = Progress::new(ui, goal);
         let began = Instant::now();
         let mut state = State { frames: 0, seconds: 0.0 };
-        while !goal.is_reached(state) && !interrupt::asked() && !stop() {
+        let most = FRAMES_END - u64::from(self.renderer.options().first_frame);
+        while !goal.is_reached(state) && state.frames < most && !interrupt::asked() && !stop() {
             self.renderer.frame()?;
             state = State { frames: state.frames + 1, seconds: began.elapsed().as_secs_f64() };
             progress.update(state);
         }
         self.renderer.finish()?;
         progress.finish();
+        if state.frames == most && !goal.is_reached(state) {
+            ui.warn("the numbers of frames end at 2³²: the render ends before its time");
+        }
         match state.frames {
             0 if interrupt::asked() => Err(Failure::new("interrupted before the first frame: nothing was written")),
             _ if interrupt::asked() => {
@@ -123,7 +133,7 @@ impl<'a> Job<'a> {
 
     /// Writes what the last frames gave to files; `began` is when the way to them did.
     pub fn write(&mut self, paths: &[PathBuf], spent: State, began: Instant) -> Result<Summary, Failure> {
-        let facts = self.facts(spent)?;
+        let facts = self.facts(spent);
         let set_up = began.elapsed().saturating_sub(Duration::from_secs_f64(spent.seconds));
         let named = self.scene.at(facts.animation_time, self.view.camera.as_deref())?.camera;
         let camera = self.view.free.unwrap_or(named);
@@ -141,35 +151,37 @@ impl<'a> Job<'a> {
         Ok(Summary::new(&self.graph, &film, &self.renderer, (rays, counts), spent.frames, set_up, paths))
     }
 
-    fn facts(&self, spent: State) -> Result<Facts, Failure> {
+    fn facts(&self, spent: State) -> Facts {
         // Without a mean over frames, the film is that of the last one.
         let frames = if self.taken.capture.averages() { spent.frames } else { 1 };
-        let next = self.renderer.next_frame();
+        let last = self.renderer.next_frame().wrapping_sub(1);
         let name = self.view.camera.clone().or_else(|| self.scene.camera_names().into_iter().next()).unwrap_or_default();
         let camera = self.args.look.map_or(name, |[from, at]| format!("{from:?} looking at {at:?}"));
-        Ok(Facts {
+        Facts {
             samples_per_pixel: u32::try_from(frames).unwrap_or(u32::MAX).saturating_mul(Capture::samples_per_frame(&self.graph)),
             render_seconds: spent.seconds,
             graph: GraphText { text: text_of(&self.graph), hash: self.graph.digest() },
-            scene: self.args.scene.identity()?,
-            environment: self.args.scene.environment_identity()?,
+            scene: self.identity.0.clone(),
+            environment: self.identity.1.clone(),
             camera,
-            animation_time: self.view.time_at(next.wrapping_sub(1)),
+            animation_time: self.view.time_at(last),
             transport: self.graph.transport().to_string(),
-            runs: Runs::one(self.args.seed, u64::from(next) - frames, frames),
+            runs: Runs::one(self.args.seed, u64::from(last) + 1 - frames, frames),
             adapter: self.renderer.context().adapter().name.clone(),
             version: VERSION.to_owned(),
-        })
+        }
     }
 }
 
-/// The camera that `--look` puts up.
+/// The camera that `--look` puts up. What is typed are points of the world, which moments count from their origin.
 fn looking(args: &Args, scene: &Scene) -> Result<Option<Camera>, Failure> {
-    let Some([from, at]) = args.look else { return Ok(None) };
-    let lens = scene.at(args.animation_time, args.camera.as_deref())?.camera;
-    let camera =
-        lens.looking(from.into(), at.into()).ok_or_else(|| Failure::new("--look needs two points, one not straight above the other"))?;
-    Ok(Some(camera))
+    let Some(points) = args.look else { return Ok(None) };
+    let moment = scene.at(args.animation_time, args.camera.as_deref())?;
+    let origin = moment.origin.to_array();
+    let near = |point: [f32; 3]| std::array::from_fn::<f32, 3, _>(|axis| (f64::from(point[axis]) - origin[axis]) as f32);
+    let [from, at] = points.map(near);
+    let camera = moment.camera.looking(from.into(), at.into());
+    camera.map(Some).ok_or_else(|| Failure::new("--look needs two points, one not straight above the other"))
 }
 
 /// What is taken off a graph, and the plan that keeps it.

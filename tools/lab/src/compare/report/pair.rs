@@ -20,7 +20,7 @@ pub struct Pair {
     /// Error × time of the baseline over the other's: what `mse` would be at equal time if variance fell as 1/time. Differs from `mse` only
     /// where times do.
     pub mse_time: Ratio,
-    /// p-value of "both have the same error" (two-sided rank-sum test over seeds).
+    /// p-value of "both have the same error" (two-sided rank-sum test over seeds), adjusted for all pairs of the report (Holm).
     pub p: f64,
     /// Who has less error, as far as can be told.
     pub better: Better,

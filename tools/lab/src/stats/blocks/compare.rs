@@ -44,7 +44,7 @@ impl Default for BlockTest {
 /// What a comparison found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockComparison {
-    /// Failed when anything resolved is outside its band; else not resolved when too little is; else passed.
+    /// Failed when anything resolved is outside its band, or anything at all beyond doubt; else not resolved when too little is; else passed.
     pub verdict: Verdict,
     /// One for each averaged quantity.
     pub planes: Vec<PlaneComparison>,
@@ -65,9 +65,11 @@ pub struct PlaneComparison {
     pub lit: usize,
     /// Those of them that are resolved, the most different first.
     pub resolved: Vec<BlockDifference>,
+    /// The others, the surest to be outside their band first. They pass nothing, but fail where they are outside beyond doubt.
+    pub unresolved: Vec<BlockDifference>,
 }
 
-/// What was found in one resolved block.
+/// What was found in one block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockDifference {
     /// Top left pixel.
@@ -93,6 +95,8 @@ pub fn compare_blocks(ours: &Blocks, reference: &Blocks, test: &BlockTest) -> Re
     judge_blocks(&mut planes, test);
     for plane in &mut planes {
         plane.resolved.sort_by(|a, b| b.difference.value.abs().total_cmp(&a.difference.value.abs()));
+        let outside = |block: &BlockDifference| block.difference.p_outside(test.block_band);
+        plane.unresolved.sort_by(|a, b| outside(a).total_cmp(&outside(b)));
     }
     Ok(BlockComparison { verdict: verdict(&planes, test), planes, test: *test })
 }
@@ -100,7 +104,7 @@ pub fn compare_blocks(ours: &Blocks, reference: &Blocks, test: &BlockTest) -> Re
 fn compare_planes(grid: &Grid, ours: &Plane, reference: &Plane, test: &BlockTest) -> PlaneComparison {
     let overall = Difference::welch(ours.overall, reference.overall).relative_to(reference.overall.mean);
     let threshold = test.lit_above * reference.overall.mean;
-    let (mut lit, mut resolved) = (0, Vec::new());
+    let (mut lit, mut resolved, mut unresolved) = (0, Vec::new(), Vec::new());
     for (block, (a, b)) in ours.blocks.iter().zip(&reference.blocks).enumerate() {
         if a.mean.max(b.mean) <= threshold {
             continue;
@@ -108,16 +112,17 @@ fn compare_planes(grid: &Grid, ours: &Plane, reference: &Plane, test: &BlockTest
         lit += 1;
         let scale = if b.mean > threshold { b.mean } else { a.mean };
         let difference = Difference::welch(*a, *b).relative_to(scale);
-        if difference.standard_error <= test.block_error {
-            resolved.push(BlockDifference { corner: grid.corner(block), difference, verdict: Verdict::NotResolved });
-        }
+        let kind = if difference.standard_error <= test.block_error { &mut resolved } else { &mut unresolved };
+        kind.push(BlockDifference { corner: grid.corner(block), difference, verdict: Verdict::NotResolved });
     }
-    PlaneComparison { name: ours.name, overall, overall_verdict: judge_overall(&overall, test), lit, resolved }
+    PlaneComparison { name: ours.name, overall, overall_verdict: judge_overall(&overall, test), lit, resolved, unresolved }
 }
+
+/// The p-value at which what is not resolved is outside its band nevertheless.
+const BEYOND_DOUBT: f64 = 1e-3;
 
 /// A difference far beyond its band is one even where the means are not resolved.
 fn judge_overall(overall: &Difference, test: &BlockTest) -> Verdict {
-    const BEYOND_DOUBT: f64 = 1e-3;
     if overall.standard_error <= test.overall_error || overall.value.is_nan() {
         overall.judge(test.overall_band, test.overall_rule)
     } else if overall.p_outside(test.overall_band) <= BEYOND_DOUBT {
@@ -127,7 +132,7 @@ fn judge_overall(overall: &Difference, test: &BlockTest) -> Verdict {
     }
 }
 
-/// All resolved blocks of all planes are one family of tests.
+/// All resolved blocks of all planes are one family of tests, the others another.
 fn judge_blocks(planes: &mut [PlaneComparison], test: &BlockTest) {
     let mut blocks: Vec<&mut BlockDifference> = planes.iter_mut().flat_map(|plane| &mut plane.resolved).collect();
     let adjusted = |p: fn(&Difference, f64) -> f64| {
@@ -137,13 +142,21 @@ fn judge_blocks(planes: &mut [PlaneComparison], test: &BlockTest) {
     for ((block, outside), equivalent) in blocks.iter_mut().zip(outside).zip(equivalent) {
         block.verdict = block.difference.judge_by(test.block_band, test.block_rule, outside, equivalent);
     }
+    let mut others: Vec<&mut BlockDifference> = planes.iter_mut().flat_map(|plane| &mut plane.unresolved).collect();
+    let outside = multiple::adjusted(&others.iter().map(|block| block.difference.p_outside(test.block_band)).collect::<Vec<_>>());
+    for (block, outside) in others.iter_mut().zip(outside) {
+        if outside <= BEYOND_DOUBT || block.difference.value.is_nan() {
+            block.verdict = Verdict::Failed;
+        }
+    }
 }
 
 fn verdict(planes: &[PlaneComparison], test: &BlockTest) -> Verdict {
     let every = |is: fn(Verdict) -> bool| {
         planes.iter().all(|plane| is(plane.overall_verdict) && plane.resolved.iter().all(|block| is(block.verdict)))
     };
-    if !every(|verdict| verdict != Verdict::Failed) {
+    let beyond_doubt = planes.iter().flat_map(|plane| &plane.unresolved).any(|block| block.verdict == Verdict::Failed);
+    if beyond_doubt || !every(|verdict| verdict != Verdict::Failed) {
         Verdict::Failed
     } else if every(|verdict| verdict == Verdict::Passed) && planes.iter().all(|plane| plane.is_resolved(test)) {
         Verdict::Passed
@@ -162,9 +175,9 @@ impl PlaneComparison {
         self.share() >= test.resolved_share
     }
 
-    /// Resolved blocks with this verdict, the most different first.
+    /// Blocks with this verdict, resolved ones first.
     pub fn blocks(&self, verdict: Verdict) -> impl Iterator<Item = &BlockDifference> {
-        self.resolved.iter().filter(move |block| block.verdict == verdict)
+        self.resolved.iter().chain(&self.unresolved).filter(move |block| block.verdict == verdict)
     }
 
     fn describe(&self, f: &mut fmt::Formatter<'_>, test: &BlockTest) -> fmt::Result {
@@ -176,6 +189,9 @@ impl PlaneComparison {
         }
         if let Some(worst) = self.resolved.first() {
             write!(f, ", the worst {worst} (band {})", percent(test.block_band))?;
+        }
+        if let Some(furthest) = self.unresolved.first() {
+            write!(f, ", of the others {furthest}")?;
         }
         match self.blocks(Verdict::Failed).count() {
             0 => Ok(()),
@@ -280,6 +296,16 @@ mod tests {
         assert_eq!(noisy.verdict, Verdict::NotResolved);
         assert_eq!((noisy.planes[0].lit, noisy.planes[0].resolved.len()), (36, 0));
         assert!(noisy.to_string().contains("0 of 36 lit blocks resolved (not the 90 % asked)"), "{noisy}");
+    }
+
+    #[test]
+    fn blocks_that_are_not_resolved_fail_beyond_doubt() {
+        // The whole is resolved to 0.2 %, hardly a block to 0.7 %; one of the blocks has only half its light.
+        let one = |x: u32, y: u32| if x / 8 == 4 && y / 8 == 2 { 0.5 } else { 1.0 };
+        let lenient = BlockTest { overall_band: 0.1, ..BlockTest::default() };
+        assert_eq!(verdicts(92, 0.06, &lenient, one)[1], 200);
+        let failed = verdicts(93, 0.06, &lenient, |_, _| 1.0)[1];
+        assert!(plausible_count(failed, 200, 1e-3), "{failed}");
     }
 
     #[test]

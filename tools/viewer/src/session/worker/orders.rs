@@ -5,7 +5,8 @@ use crate::{
     Recipe,
     session::{
         Side,
-        build::{Built, Order, files_of},
+        build::{Built, Order, Refused, files_of},
+        guard::guard,
         message::{Inbox, Watch},
     },
 };
@@ -73,7 +74,7 @@ impl Worker {
             desk.builds = true;
             let (workshop, outbox) = (self.workshop.clone(), self.outbox.clone());
             std::thread::spawn(move || {
-                let outcome = workshop.make(&order);
+                let outcome = guard(|| workshop.make(&order)).unwrap_or_else(|words| Err(Refused::Panic(words)));
                 // Nobody listens when the session has ended.
                 let _ = outbox.send(Inbox::Built(Box::new(Built { order, outcome })));
             });
