@@ -92,8 +92,8 @@ impl SceneGlobals {
     /// [`Error::Globals`] for a scene that was not finished.
     pub fn stack_depth(scene: &Scene, features: &Features) -> Result<u32, Error> {
         let lower = scene.meshes.iter().map(|mesh| mesh.bvh.depth).max().unwrap_or(0);
-        // A multiple of 8, so that similar scenes share pipelines.
-        Ok((upper_levels(scene, features)? + lower).next_multiple_of(8))
+        // A multiple of 8, so that similar scenes share pipelines; not none, which no array may have, where there is nothing to hit.
+        Ok((upper_levels(scene, features)? + lower).next_multiple_of(8).max(8))
     }
 
     fn wide(&self) -> Option<&Wide> {

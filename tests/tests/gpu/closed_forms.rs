@@ -114,6 +114,18 @@ fn edge(off: f32, inner: f32, outer: f32) -> f64 {
     ((off - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2)
 }
 
+/// Nothing to hit is no fault: what a camera sees is the sky.
+#[test]
+fn an_empty_scene_shows_its_sky() {
+    let Some(context) = context() else { return };
+    let mut stage = Stage::default();
+    stage.sky(0.75);
+    stage.camera(Vec3::ZERO, Vec3::NEG_Z, 1.0);
+    let graph = GRAPH.replace("'direct'", "'full:2'");
+    let film = Parts { size: [8, 8], ..Parts::new(&stage.finish(), &graph) }.film(&context, 2);
+    mean_of(&film, 0).assert_is("sky", 0.75, 1e-3, 1e-4);
+}
+
 #[test]
 fn a_disk_lights_the_point_below_it() {
     let (radius, height) = (0.7_f32, 1.3_f32);

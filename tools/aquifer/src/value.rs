@@ -57,6 +57,14 @@ pub fn error(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A share of a whole, more than none.
+pub fn share(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(share) if share > 0.0 && share <= 1.0 => Ok(share),
+        _ => Err("write a share above 0 and at most 1, e.g. 0.1".to_owned()),
+    }
+}
+
 /// Frames to render.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Frames {
@@ -135,6 +143,10 @@ mod tests {
         assert_eq!((seconds("2.5"), seconds("10 s")), (Ok(2.5), Ok(10.0)));
         for wrong in ["0", "-1", "inf", "NaN", "soon"] {
             assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(share("0.1"), Ok(0.1));
+        for wrong in ["0", "-1", "1.5", "inf", "NaN", ""] {
+            assert!(share(wrong).is_err(), "{wrong}");
         }
         assert!(setting("spatial.taps=5").is_ok() && setting("spatial.taps").is_err() && setting("=5").is_err());
         assert!(image("a/b.EXR").is_ok() && image("a.png").is_ok() && image("a.jpg").is_err() && image("exr").is_err());

@@ -121,10 +121,10 @@ pub struct Args {
     #[arg(long, help_heading = "Protocol")]
     force: bool,
     /// Largest share of the smallest error that the reference's own variance may be
-    #[arg(long, value_name = "SHARE", default_value_t = 0.1, help_heading = "References")]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1, value_parser = value::share, allow_negative_numbers = true, help_heading = "References")]
     reference_share: f64,
     /// Most samples of a reference
-    #[arg(long, value_name = "N", default_value_t = 65_536, help_heading = "References")]
+    #[arg(long, value_name = "N", default_value_t = 65_536, value_parser = clap::value_parser!(u64).range(1..), help_heading = "References")]
     reference_samples: u64,
     /// Folder where references are kept [default: aquifer in the user's cache folder]
     #[arg(long, value_name = "DIR", help_heading = "References")]

@@ -57,25 +57,10 @@ fn json(bytes: &[u8]) -> &[u8] {
 
 /// A plain file in the folder or below it.
 fn find(folder: &Path, uri: &str) -> Option<PathBuf> {
-    let relative = PathBuf::from(decoded(uri)?);
+    let relative = PathBuf::from(urlencoding::decode(uri).ok()?.into_owned());
     let stays = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     let (folder, path) = (folder.canonicalize().ok()?, folder.join(&relative).canonicalize().ok()?);
     (stays && path.starts_with(&folder) && path.is_file()).then_some(path)
-}
-
-/// A URI with `%20` and its like replaced; what is no such code stands for itself.
-fn decoded(uri: &str) -> Option<String> {
-    let digit = |byte: u8| char::from(byte).to_digit(16).map(|digit| digit as u8);
-    let (mut bytes, mut rest) = (Vec::new(), uri.as_bytes());
-    while let [first, after @ ..] = rest {
-        let code = match after {
-            [high, low, ..] if *first == b'%' => digit(*high).zip(digit(*low)),
-            _ => None,
-        };
-        bytes.push(code.map_or(*first, |(high, low)| 16 * high + low));
-        rest = if code.is_some() { &after[2..] } else { after };
-    }
-    String::from_utf8(bytes).ok()
 }
 
 fn file_hash(path: &Path) -> io::Result<blake3::Hash> {

@@ -234,7 +234,10 @@ pub fn shaders(registry: &Registry, plan: &Plan) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::thread;
+    use std::{
+        sync::atomic::{AtomicBool, Ordering},
+        thread,
+    };
 
     fn reference(folder: &Path) -> Reference {
         let entry = Entry { about: "a scene".into(), ..Entry::default() };
@@ -267,18 +270,21 @@ mod tests {
         early.keep(film(1), 1).unwrap();
         late.forget_older();
         assert!(reference(folder.path()).load().unwrap().is_some_and(|(entry, _)| entry == early.entry));
-        // And one whose film another removes as soon as it is there can still say what it wrote.
-        let (path, done) = (early.film_path(3), std::sync::atomic::AtomicBool::new(false));
+        // And one whose films another removes as soon as they are there can still say what it wrote.
+        let done = AtomicBool::new(false);
+        let paths: Vec<PathBuf> = (2..12).map(|chunks| early.film_path(chunks)).collect();
         thread::scope(|scope| {
             scope.spawn(|| {
-                while !done.load(std::sync::atomic::Ordering::Relaxed) {
-                    let _ = fs::remove_file(&path);
+                while !done.load(Ordering::Relaxed) {
+                    for path in &paths {
+                        let _ = fs::remove_file(path);
+                    }
                 }
             });
-            let kept = early.keep(film(3), 3);
-            done.store(true, std::sync::atomic::Ordering::Relaxed);
+            let kept = (2..12).try_for_each(|chunks| early.keep(film(chunks), chunks));
+            done.store(true, Ordering::Relaxed);
             kept.unwrap();
         });
-        assert_eq!(early.entry.chunks, 3);
+        assert_eq!(early.entry.chunks, 11);
     }
 }
