@@ -34,6 +34,11 @@ const SCRIPT: &str = concat!(
     include_str!("page/assets/page.js"),
 );
 
+/// What the page says of the bias of each graph, for those who only read words.
+pub fn biases(report: &Report) -> Vec<String> {
+    verdict::biases(report)
+}
+
 /// Why no page could be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {

@@ -141,3 +141,31 @@ fn what_cannot_be_compared_is_said() {
     let run = aquifer(&["compare", "restir_di", "--scene", "cornell", "-o", "/proc/nowhere"]);
     run.fails(1, "cannot make `/proc/nowhere");
 }
+
+#[test]
+fn words_tell_who_is_biased() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let run = aquifer(&[
+        "compare",
+        "light_sampling",
+        "--scene",
+        "cornell",
+        "--size",
+        "32x18",
+        "--warm-up",
+        "0",
+        "--seeds",
+        "4",
+        "--budget",
+        "20",
+        "--reference-samples",
+        "512",
+        "--cache",
+        &path("cache"),
+        "-o",
+        &path("out"),
+    ]);
+    let found = run.succeeds().out;
+    assert!(found.contains("`light_sampling`, mean against the reference: cornell"), "{found}");
+}

@@ -50,6 +50,11 @@ pub(super) fn of(report: &Report) -> Vec<Verdict> {
     verdicts
 }
 
+/// What is known of the bias of each graph, in words.
+pub(super) fn biases(report: &Report) -> Vec<String> {
+    (0..report.graphs.len()).filter_map(|graph| bias(report, graph)).map(|item| format!("{}: {}", item.mark, item.text)).collect()
+}
+
 /// The pair that is spoken of: the first of the graph in the scene.
 pub(super) fn pair(scene: &SceneResult, graph: usize) -> Option<&Pair> {
     scene.pairs.iter().find(|pair| scene.cells.get(pair.other).is_some_and(|cell| cell.graph == graph))

@@ -27,6 +27,7 @@ pub fn report(report: &Report) -> String {
         lines.extend(scene.explained.iter().flat_map(|explained| explanation(report, explained)));
         lines.push(String::new());
     }
+    lines.extend(aquifer_lab::page::biases(report));
     lines.push(format!("times by {} on {}", report.made.clock, report.made.adapter));
     lines.join("\n")
 }
