@@ -113,3 +113,16 @@ fn the_schema_takes_what_check_takes() {
     let exposure = &schema["properties"]["pass"]["properties"]["tonemap"]["properties"]["set"]["properties"]["exposure"];
     assert_eq!(exposure["description"], "Exposure in stops.");
 }
+
+/// What references are made with is no matter of the folder one stands in.
+#[test]
+fn a_bare_name_is_the_built_in_graph() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("path_tracer.toml"), "title = 'another'\n").unwrap();
+    let check = |graph: &str| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_aquifer")).args(["check", graph]).current_dir(folder.path()).output();
+        output.unwrap().status.success()
+    };
+    assert!(check("path_tracer"));
+    assert!(!check("./path_tracer.toml") && !check("path_tracer.toml"), "the file is the one without passes");
+}
