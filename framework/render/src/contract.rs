@@ -37,13 +37,12 @@ pub(crate) fn contract(interface: &Interface, facts: &BTreeSet<String>) -> Resul
         ..Contract::default()
     };
     if let Some(text) = interface.paths.first() {
-        let wrong = |_| Wrong {
-            module: None,
-            name: String::new(),
-            tag: None,
-            message: format!("`@paths {text}`: write a number of scatterings, or the fewest: `2..`"),
-        };
-        contract.paths = Some(text.parse().map_err(wrong)?);
+        let wrong = |message| Wrong { module: None, name: String::new(), tag: None, message };
+        if interface.paths.iter().any(|other| other != text) {
+            return Err(wrong(format!("its modules say different `@paths`: {}", interface.paths.join(", "))));
+        }
+        let unread = |_| wrong(format!("`@paths {text}`: write a number of scatterings, or the fewest: `2..`"));
+        contract.paths = Some(text.parse().map_err(unread)?);
     }
     for note in &interface.bias {
         let slot = slot_of(interface, &note.module);

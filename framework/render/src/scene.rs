@@ -72,7 +72,8 @@ impl SceneGlobals {
     pub fn keeping(context: &Context, scene: Arc<Scene>, view: View, features: &Features) -> Result<SceneGlobals, Error> {
         let still = Still::upload(context, &scene, features)?;
         let first = State::of(&scene, &still, &view, 0).map_err(refused)?;
-        let moving = Moving::new(context, &scene, features, &first, upper_levels(&scene, features)?)?;
+        let room = if features.moving_objects { upper_levels(&scene, features)? } else { first.depth };
+        let moving = Moving::new(context, &scene, features, &first, room)?;
         Ok(SceneGlobals {
             batches: batches(&scene),
             scene,

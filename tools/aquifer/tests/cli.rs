@@ -2,6 +2,8 @@
 
 #[path = "cli/compare.rs"]
 mod compare;
+#[path = "cli/dark_triangle.rs"]
+mod dark_triangle;
 #[path = "cli/explain.rs"]
 mod explain;
 #[path = "cli/films.rs"]

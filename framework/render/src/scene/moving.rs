@@ -20,7 +20,8 @@ pub struct State {
     arrays: [Array; 5],
     /// Lights that can be drawn.
     lights: u32,
-    depth: u32,
+    /// Levels of the upper hierarchy.
+    pub depth: u32,
 }
 
 struct Array {

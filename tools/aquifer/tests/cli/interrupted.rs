@@ -2,6 +2,7 @@
 
 use crate::{
     compare::{SMALL, errors, report},
+    dark_triangle::dark_triangle,
     run::{aquifer, names},
 };
 use std::{
@@ -78,20 +79,11 @@ fn a_full_disk_is_said_and_what_was_measured_stays() {
     assert!(kept.iter().all(|name| names(&measured).contains(name)));
 }
 
-/// A triangle before a camera, and no light at all.
-const DARK: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
-"nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]}],
-"cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
-"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}],
-"bufferViews": [{"buffer": 0, "byteLength": 36}],
-"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]}"#;
-
 #[test]
 fn without_light_relative_errors_are_undefined_and_it_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("dark.gltf");
-    std::fs::write(&scene, DARK).unwrap();
+    std::fs::write(&scene, dark_triangle(0)).unwrap();
     let out = folder.path().join("out");
     let path = |path: &Path| path.to_str().unwrap().to_owned();
     let run = aquifer(&[

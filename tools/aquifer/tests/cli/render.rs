@@ -1,6 +1,9 @@
 //! `aquifer render`: needs an adapter, and skips (or, with AQUIFER_REQUIRE_ADAPTER=1, fails) without one.
 
-use crate::run::{Run, aquifer, aquifer_with, names};
+use crate::{
+    dark_triangle::dark_triangle,
+    run::{Run, aquifer, aquifer_with, names},
+};
 use aquifer_lab::film::Film;
 use std::{
     path::Path,
@@ -125,15 +128,6 @@ fn frames_have_numbers_up_to_the_last() {
     }
 }
 
-/// A triangle five kilometres from the world's origin, and a camera before it.
-const FAR: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
-"nodes": [{"mesh": 0, "translation": [5000, 0, 0]}, {"camera": 0, "translation": [5000, 0, 3]}],
-"cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
-"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}],
-"bufferViews": [{"buffer": 0, "byteLength": 36}],
-"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]}"#;
-
 #[test]
 fn one_looks_from_points_of_the_world() {
     if !adapter() {
@@ -141,7 +135,7 @@ fn one_looks_from_points_of_the_world() {
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    std::fs::write(at("far.gltf"), FAR).expect("a file");
+    std::fs::write(at("far.gltf"), dark_triangle(5000)).expect("a file");
     let film = |options: &[&str]| {
         let args = ["render", "gbuffer_view", "--scene", &at("far.gltf"), "--size", "16x9", "--frames", "1", "-o", &at("a.exr")];
         aquifer(&[&args[..], options].concat()).succeeds();
